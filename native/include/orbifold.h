@@ -1,0 +1,215 @@
+/* Orbifold UV: bijective, seamless maps of a triangle mesh onto an orbifold of the sphere, the plane or the
+ * hyperbolic plane.
+ *
+ * SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * The way through this header:
+ *
+ *     orb_embedding *embedding = NULL;
+ *     orb_error error = {0};
+ *     orb_mesh_arrays mesh = {n, vertices, m, triangles};
+ *     orb_request request = orb_request_default();
+ *     request.signature = "442";  request.n_cones = 3;  request.cones = cones;
+ *     if (orb_embed(&mesh, &request, &embedding, &error) != ORB_OK) ... error.message, error.elements
+ *     orb_uv(embedding, ORB_CHART_DEFAULT, uv, NULL, &error);
+ *     orb_embedding_free(embedding);
+ *
+ * An embedding is handed out only after it passed the certificate (docs/mathematics.md, section 5): every triangle
+ * positively oriented, both sides of every seam equally long, the angles around every vertex those of the
+ * orbifold, and the orbifold's area. These four make the map a bijection.
+ *
+ * The library keeps no global state, prints nothing, never exits and never writes to an array it is given; arrays
+ * of the caller are not needed after a call returns. Functions may be called from several threads at once as long
+ * as each has its own objects. Angles are in radians. Vertices and triangles are counted from 0. */
+#ifndef ORBIFOLD_H
+#define ORBIFOLD_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define ORB_API __attribute__((visibility("default")))
+
+typedef enum orb_status {
+    ORB_OK = 0,
+    ORB_OUT_OF_MEMORY,
+    ORB_CANCELLED,
+    ORB_BAD_ARGUMENT,             /* a null array, a negative count, an unknown chart or kind of weights */
+    ORB_NON_FINITE,               /* a coordinate that is not a finite number; elements: vertices */
+    ORB_INDEX_OUT_OF_RANGE,       /* a triangle names a vertex that is not there; elements: triangles */
+    ORB_DEGENERATE_TRIANGLE,      /* a triangle names a vertex twice; elements: triangles */
+    ORB_REPEATED_TRIANGLE,        /* two triangles on the same three vertices; elements: triangles */
+    ORB_NON_MANIFOLD_EDGE,        /* more than two triangles on an edge; elements: its two vertices, pairwise */
+    ORB_NON_MANIFOLD_VERTEX,      /* triangles around a vertex are more than one fan; elements: vertices */
+    ORB_INCONSISTENT_ORIENTATION, /* two triangles run through an edge the same way; elements: edges */
+    ORB_SEVERAL_COMPONENTS,       /* elements: one vertex of each component */
+    ORB_BOUNDARY,                 /* the signature has no mirror but the mesh has a boundary; elements: edges */
+    ORB_WRONG_GENUS,              /* the closed mesh is not sphere-like */
+    ORB_ZERO_AREA_TRIANGLE,       /* makes a weight infinite or the certificate fail; elements: triangles */
+    ORB_BAD_SIGNATURE,            /* does not parse; elements[0]: position in the string */
+    ORB_BAD_ORDER,                /* an order below 2, or orders that are not the signature's */
+    ORB_BAD_ORBIFOLD,             /* MN with M != N, or one cone: no surface has this orbifold as a quotient */
+    ORB_UNSUPPORTED_SIGNATURE,    /* good, but not among those that this version embeds */
+    ORB_CONE_COUNT,               /* the signature has another number of cones than were given */
+    ORB_BAD_CONE,                 /* a cone is given twice, is out of range or isolated; elements: vertices */
+    ORB_BAD_WEIGHT,               /* a given weight is not positive and finite, or an edge has none; elements: edges */
+    ORB_CUT_BLOCKED,              /* no path joins two cones; elements: the two vertices */
+    ORB_NOT_CONVERGED,
+    ORB_CERTIFICATE_FAILED,       /* elements: flipped triangles, or the vertices whose angles are wrong */
+    ORB_LINEAR_SOLVER             /* CHOLMOD reported a fault that is none of the above */
+} orb_status;
+
+/* "ORB_OK", "ORB_OUT_OF_MEMORY", ...; never NULL. */
+ORB_API const char *orb_status_name(orb_status status);
+
+typedef enum orb_element { ORB_NOTHING = 0, ORB_VERTEX, ORB_EDGE, ORB_TRIANGLE, ORB_CHARACTER } orb_element;
+
+enum { ORB_MAX_ELEMENTS = 16 };
+
+/* What went wrong, for a person: one sentence, and where. An edge takes two entries (its vertices). */
+typedef struct orb_error {
+    orb_status status;
+    orb_element element;                /* what the entries of `elements` are */
+    int32_t n_elements;                 /* entries used, at most ORB_MAX_ELEMENTS */
+    int32_t elements[ORB_MAX_ELEMENTS]; /* the first ones, ascending */
+    int64_t n_found;                    /* how many there are in all (edges count once) */
+    char message[320];
+} orb_error;
+
+/* A closed (sphere-like) triangle mesh, consistently oriented. Vertices that no triangle uses are tolerated. */
+typedef struct orb_mesh_arrays {
+    int32_t n_vertices;
+    const double *vertices; /* [n_vertices*3] */
+    int32_t n_triangles;
+    const int32_t *triangles; /* [n_triangles*3] */
+} orb_mesh_arrays;
+
+typedef enum orb_weights {
+    ORB_WEIGHTS_COTANGENT = 0, /* (cot a + cot b) / 2, clamped from below once per edge */
+    ORB_WEIGHTS_MEAN_VALUE,    /* Floater 2003, symmetrised: (w_ij + w_ji) / 2 */
+    ORB_WEIGHTS_UNIFORM,       /* 1 */
+    ORB_WEIGHTS_GIVEN          /* edge_weights of the request */
+} orb_weights;
+
+/* Called now and then from the thread that computes; return false to cancel. `fraction` in [0, 1] never falls. */
+typedef bool (*orb_progress)(const char *stage, double fraction, void *user);
+
+typedef struct orb_request {
+    const char *signature; /* Conway's notation: "442", "2222", "22(12)"; digits are one order each */
+    int32_t n_cones;
+    const int32_t *cones;  /* [n_cones] vertices, in the signature's order; the cut runs through them in turn */
+    const int32_t *orders; /* [n_cones] order of each cone, a permutation of the signature's; NULL: as it stands */
+    orb_weights weights;
+    double clamp;                /* least cotangent weight, > 0 */
+    int32_t n_edge_weights;      /* for ORB_WEIGHTS_GIVEN: one row for each edge of the mesh, in any sequence */
+    const double *edge_weights;  /* [n_edge_weights*3] rows i, j, w_ij > 0 */
+    orb_progress progress;       /* may be NULL */
+    void *user;                  /* handed to progress */
+} orb_request;
+
+/* Cotangent weights clamped at 0.01; all else zero. */
+ORB_API orb_request orb_request_default(void);
+
+/* Conway's signature, read. Euler characteristic of the orbifold as an exact fraction. */
+enum { ORB_MAX_SIGNATURE = 4096 };
+typedef struct orb_signature_info {
+    int32_t curvature;      /* +1 spherical, 0 Euclidean, -1 hyperbolic */
+    const char *geometry;   /* "spherical", "euclidean", "hyperbolic" */
+    double euler;           /* Euler characteristic of the orbifold */
+    int32_t n_cones;        /* cones and mirror corners */
+    bool supported;         /* whether orb_embed takes it */
+} orb_signature_info;
+
+/* Errors: ORB_BAD_SIGNATURE (elements[0]: position), ORB_BAD_ORDER, ORB_BAD_ORBIFOLD. `orders` may be NULL or have
+ * room for `capacity` entries, of which the first min(n_cones, capacity) are written. */
+ORB_API orb_status orb_signature_read(const char *signature, orb_signature_info *info, int32_t *orders,
+                                      int32_t capacity, orb_error *error);
+
+typedef struct orb_embedding orb_embedding;
+
+/* The whole pipeline: topology, weights, cut, tile, initial guess, minimisation, certificate. On success
+ * *embedding is a new object; on failure it is NULL. */
+ORB_API orb_status orb_embed(const orb_mesh_arrays *mesh, const orb_request *request, orb_embedding **embedding,
+                             orb_error *error);
+ORB_API void orb_embedding_free(orb_embedding *embedding);
+
+/* What an embedding holds; the arrays live as long as it does. A copy of a vertex is one of the images that a
+ * vertex has because the mesh was cut; copy v for v < n_vertices is the vertex itself. */
+typedef struct orb_view {
+    int32_t n_vertices, n_triangles, n_copies, n_cones, n_edges, n_seams;
+    const int32_t *cut_triangles; /* [n_triangles*3] the mesh's triangles, in copies */
+    const int32_t *cut_to_vertex; /* [n_copies] */
+    const double *embedding;      /* [n_copies*3] (x, y, 1), unit sphere, or upper sheet of the hyperboloid */
+    const double *embedding_low;  /* [n_copies*3] what double precision cut off: the point is the sum of the two */
+    const int32_t *cones;         /* [n_cones] */
+    const int32_t *orders;        /* [n_cones] */
+    const double *weights;        /* [n_edges*3] rows i, j, w_ij as used */
+    const int32_t *seams;         /* [n_seams*2] edges of the mesh across which the layout is not continuous */
+    const char *signature, *geometry;
+} orb_view;
+ORB_API void orb_embedding_view(const orb_embedding *embedding, orb_view *view);
+
+/* Measures of an embedding. Lengths and areas on the tile are those of the geometry. */
+typedef struct orb_report {
+    int32_t vertices, triangles, components, euler, boundary_loops, genus; /* of the mesh */
+    double orbifold_euler;
+    int32_t iterations; /* steps of the minimiser */
+    double energy;      /* 1/2 sum over glued edges of w_ij d_ij^2 */
+    double relative_gradient; /* max over vertices of |g_v| / sum_j w_vj d_vj */
+    int64_t clamped_weights, factor_nonzeros;
+    int64_t flipped, flipped_float32; /* the second: UVs of the default chart rounded to float */
+    double seam_residual;             /* relative to the median edge */
+    double angle_residual, area_residual; /* radians; relative (0 in the plane) */
+    double quasi_conformal_mean, quasi_conformal_median, quasi_conformal_max; /* area weighted on the mesh */
+    double log_area_std;        /* area-weighted standard deviation of log(area on the tile / area on the mesh) */
+    double symmetric_dirichlet; /* area-weighted mean of (s1^2 + s2^2 + 1/s1^2 + 1/s2^2) / 4, both areas scaled to 1 */
+    double seconds_topology, seconds_cut, seconds_tile, seconds_initial, seconds_assemble, seconds_analyze,
+        seconds_factor, seconds_solve, seconds_certify, seconds_total;
+} orb_report;
+ORB_API void orb_embedding_report(const orb_embedding *embedding, orb_report *report);
+
+typedef enum orb_chart {
+    ORB_CHART_DEFAULT = 0,     /* periodic, stereographic or Poincaré, after the geometry */
+    ORB_CHART_PERIODIC,        /* plane: a lattice of translations becomes the unit square's */
+    ORB_CHART_CONFORMAL,       /* plane: no shear, the tile fills the unit square */
+    ORB_CHART_STEREOGRAPHIC,   /* sphere, from the point opposite to the tile's centre */
+    ORB_CHART_EQUIRECTANGULAR, /* sphere: longitude and latitude */
+    ORB_CHART_OCTAHEDRAL,      /* sphere unfolded to the unit square */
+    ORB_CHART_POINCARE,        /* hyperbolic: conformal disk */
+    ORB_CHART_KLEIN            /* hyperbolic: straight geodesics */
+} orb_chart;
+
+/* Texture coordinates per triangle corner, uv[n_triangles*3*2], caller's array. *flipped_float32 (may be NULL): the
+ * number of triangles that are not positively oriented once the coordinates are rounded to float. Error:
+ * ORB_BAD_ARGUMENT for a chart of another geometry. */
+ORB_API orb_status orb_uv(const orb_embedding *embedding, orb_chart chart, double *uv, int64_t *flipped_float32,
+                          orb_error *error);
+
+/* One point of the unit sphere for each vertex, positions[n_vertices*3], caller's array: a spherical embedding
+ * divided by its group and centred (docs/mathematics.md, section 7), so that a closed mesh needs no cut. Certified:
+ * every triangle is positively oriented and the degree is one. *mended (may be NULL): triangles that the division
+ * had flipped and that were mended. Isolated vertices get the origin. */
+ORB_API orb_status orb_whole_sphere(const orb_embedding *embedding, double *positions, int64_t *mended,
+                                    orb_error *error);
+
+/* The same computation on a thread of the library's own. The arrays of mesh and request are copied. */
+typedef struct orb_job orb_job;
+ORB_API orb_status orb_job_start(const orb_mesh_arrays *mesh, const orb_request *request, orb_job **job,
+                                 orb_error *error);
+/* True once the job is done (or cancelled). stage[32] and fraction may be NULL. */
+ORB_API bool orb_job_poll(orb_job *job, char *stage, double *fraction);
+/* Asks the job to stop; orb_job_finish then returns ORB_CANCELLED at once, at any size of mesh. */
+ORB_API void orb_job_cancel(orb_job *job);
+/* Waits, hands over the embedding (or the error), and frees the job, which may be NULL. */
+ORB_API orb_status orb_job_finish(orb_job *job, orb_embedding **embedding, orb_error *error);
+
+/* "0.1.0" */
+ORB_API const char *orb_version(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,38 @@
+/* Sparse Cholesky factorisation, real symmetric or complex Hermitian. SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * The only door to CHOLMOD. Analyse a pattern once, factor it with many values, solve many times:
+ * the lower triangle, by columns, row indices ascending, the diagonal entry first in its column. */
+#ifndef ORB_CHOLESKY_H
+#define ORB_CHOLESKY_H
+
+#include "error.h"
+
+typedef struct orb_pattern {
+    int64_t n;
+    int64_t *column; /* [n+1] */
+    int32_t *row;    /* [column[n]] row >= column */
+} orb_pattern;
+
+typedef enum orb_ordering { ORDERING_AMD, ORDERING_METIS } orb_ordering;
+
+typedef struct orb_cholesky orb_cholesky;
+
+/* A fill-reducing ordering of the pattern: permutation[n], permutation[k] is the row that comes k-th. */
+orb_status cholesky_order(const orb_pattern *pattern, orb_ordering ordering, int32_t *permutation, orb_error *error);
+
+/* Symbolic analysis with a given ordering (the pattern is only read during the call). Values are real doubles, or,
+ * for `is_complex`, double complex. */
+orb_status cholesky_analyze(const orb_pattern *pattern, const int32_t *permutation, bool is_complex,
+                            orb_cholesky **cholesky, orb_error *error);
+
+/* Numerical factorisation of values[column[n]] (complex: interleaved, twice as many doubles). A matrix that is not
+ * positive definite is no error: *positive says so, and the factor cannot be used. */
+orb_status cholesky_factor(orb_cholesky *cholesky, const double *values, bool *positive, orb_error *error);
+
+/* Solves for n_right right-hand sides, each n long (complex: interleaved), column after column. x may be b. */
+orb_status cholesky_solve(orb_cholesky *cholesky, const double *b, int32_t n_right, double *x, orb_error *error);
+
+int64_t cholesky_nonzeros(const orb_cholesky *cholesky);
+void cholesky_free(orb_cholesky *cholesky);
+
+#endif

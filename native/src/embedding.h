@@ -1,0 +1,26 @@
+/* What orb_embed returns: an embedding and the stages it was made of. SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef ORB_EMBEDDING_H
+#define ORB_EMBEDDING_H
+
+#include "holonomy.h"
+#include "mesh.h"
+#include "signature.h"
+#include "tile.h"
+
+struct orb_embedding {
+    orb_mesh *mesh;
+    orb_signature *signature;
+    int32_t *cones;      /* [tile->n_cones] vertices */
+    orb_tile *tile;      /* after the affine modulus, where there is one */
+    orb_copies *copies;
+    orb_point *position; /* [mesh->n_vertices] isolated vertices: the origin */
+    orb_point *placed;   /* [copies->n_copies] position of each copy */
+    double *weights;     /* [mesh->n_edges] */
+    double *edge_weights;/* [mesh->n_edges*3] rows i, j, w_ij for the view */
+    double *coordinates, *coordinates_low; /* [copies->n_copies*3] for the view */
+    int32_t n_seams;
+    int32_t *seams;      /* [n_seams*2] */
+    orb_report report;
+};
+
+#endif

@@ -1,0 +1,91 @@
+/* The sphere, the plane and the hyperbolic plane, written once. SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * A point is a complex number z in the chart whose metric is 2 |dz| / (1 + K |z|^2): stereographic projection for
+ * K = 1, half the usual coordinate for K = 0, the Poincaré disk for K = -1. Every orientation-preserving isometry
+ * is z -> (a z + b) / (conj(a) - K conj(b) z) in all three, and the translation that takes p to the origin is
+ * z -> (z - p) / (1 + K conj(p) z). So K enters as a number, and nobody but this file and tile.c looks at it.
+ *
+ * Points and isometries carry double-double precision (value + low part), since in the hyperbolic plane all of the
+ * digits that tell far points apart lie at the end of z. Differences of points are then formed to full double
+ * precision, and everything after that is done in double (docs/mathematics.md, Precision).
+ *
+ * A tangent vector at z is a complex number too, in the frame that the chart gives; its modulus is its length. */
+#ifndef ORB_GEOMETRY_H
+#define ORB_GEOMETRY_H
+
+#include <complex.h>
+#include <stdbool.h>
+
+typedef struct orb_geometry orb_geometry;
+
+typedef struct orb_point {
+    double complex z, low; /* the point is z + low */
+} orb_point;
+
+/* z -> (a z + b) / (conj(a) - K conj(b) z) */
+typedef struct orb_isometry {
+    orb_point a, b;
+} orb_isometry;
+
+/* curvature > 0, 0, < 0: sphere, plane, hyperbolic plane. A constant; never freed. */
+const orb_geometry *geometry_of_curvature(int curvature);
+const char *geometry_name(const orb_geometry *geometry);
+int geometry_curvature(const orb_geometry *geometry);
+
+/* --- how the minimiser treats the geometry (one row of a table each, docs/decisions.md) --- */
+/* The energy is quadratic: any starting point will do, so none is computed. */
+bool geometry_any_start(const orb_geometry *geometry);
+
+/* --- functions of curvature: sin r, r, sinh r and so on --- */
+double geometry_sin(const orb_geometry *geometry, double r);
+double geometry_cos(const orb_geometry *geometry, double r);
+double geometry_tan(const orb_geometry *geometry, double r);
+double geometry_atan(const orb_geometry *geometry, double t);
+
+/* --- points --- */
+orb_point point_of(double complex z);
+orb_point point_conjugate(orb_point p);
+
+/* t: where q goes when p is moved to the origin; direction from p to q, |t| = tan_K(distance / 2). */
+double complex geometry_toward(const orb_geometry *geometry, orb_point p, orb_point q);
+double geometry_distance(const orb_geometry *geometry, orb_point p, orb_point q);
+double complex geometry_log(const orb_geometry *geometry, orb_point p, orb_point q);
+orb_point geometry_exp(const orb_geometry *geometry, orb_point p, double complex v);
+/* The phase by which parallel transport along the geodesic p -> q turns a vector's frame coordinates. */
+double complex geometry_transport(const orb_geometry *geometry, orb_point p, orb_point q);
+
+/* One edge of the energy 1/2 w d(p, q)^2 (docs/mathematics.md, section 3). */
+typedef struct orb_edge_terms {
+    double distance;
+    double complex at_p, at_q; /* unit direction p -> q, at p and carried on to q */
+    double C, S;               /* d / tan d, d / sin d and their likes */
+} orb_edge_terms;
+orb_edge_terms geometry_edge(const orb_geometry *geometry, orb_point p, orb_point q);
+
+/* Signed area of the geodesic triangle 0, s, t, where s and t are `toward` vectors from its first corner. */
+double geometry_triangle_area(const orb_geometry *geometry, double complex s, double complex t);
+
+/* The three coordinates of docs/mathematics.md, section 1: (2x, 2y, 1 - K|z|^2) / (1 + K|z|^2), as value + low. */
+void geometry_coordinates(const orb_geometry *geometry, orb_point p, double value[3], double low[3]);
+
+/* The chart in which a convex tile is a convex region of the plane (orthographic; identity; Klein), and back. */
+double complex geometry_convex_chart(const orb_geometry *geometry, orb_point p);
+orb_point geometry_from_convex_chart(const orb_geometry *geometry, double complex w);
+
+/* --- isometries --- */
+orb_isometry isometry_identity(void);
+/* first `inner`, then `outer` */
+orb_isometry isometry_compose(const orb_geometry *geometry, orb_isometry outer, orb_isometry inner);
+orb_isometry isometry_inverse(orb_isometry h);
+orb_point isometry_apply(const orb_geometry *geometry, orb_isometry h, orb_point p);
+/* the phase by which h turns the frame at p: derivative / |derivative| */
+double complex isometry_turn(const orb_geometry *geometry, orb_isometry h, orb_point p);
+/* p -> origin without rotation */
+orb_isometry isometry_to_origin(const orb_geometry *geometry, orb_point p);
+orb_isometry isometry_rotation_about_origin(double angle);
+/* the one that takes p to p1 and the direction of q to that of q1 */
+orb_isometry isometry_pairing(const orb_geometry *geometry, orb_point p, orb_point q, orb_point p1, orb_point q1);
+/* whether the two are the same motion, up to `tolerance` relative to their size */
+bool isometry_same(orb_isometry g, orb_isometry h, double tolerance);
+
+#endif

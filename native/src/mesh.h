@@ -1,0 +1,42 @@
+/* Triangle arrays -> half-edges. SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * Half-edge 3 t + c runs from corner c to corner c + 1 (mod 3) of triangle t; so a triangle's corner and the
+ * half-edge that leaves it have one number. */
+#ifndef ORB_MESH_H
+#define ORB_MESH_H
+
+#include "error.h"
+
+typedef struct orb_mesh {
+    int32_t n_vertices, n_triangles, n_edges;
+    double *vertices;          /* [n_vertices*3] a copy of the input */
+    int32_t *triangles;        /* [n_triangles*3] a copy of the input */
+    int32_t *twin;             /* [n_triangles*3] the opposite half-edge; -1 on the boundary */
+    int32_t *edge;             /* [n_triangles*3] the edge that a half-edge lies on */
+    int32_t *edge_halfedge;    /* [n_edges] one half-edge of each edge */
+    int32_t *vertex_halfedge;  /* [n_vertices] a half-edge leaving the vertex (on a boundary: the one from which
+                                  turning counter-clockwise meets the whole fan); -1 if isolated */
+    int32_t n_used_vertices;   /* vertices that are not isolated */
+    int32_t n_components;      /* of triangles joined by edges; isolated vertices do not count */
+    int32_t n_boundary_loops;
+    int32_t euler;             /* used vertices - edges + triangles */
+    int32_t genus;             /* of the closed-up surface; meaningful for one component */
+} orb_mesh;
+
+static inline int32_t halfedge_next(int32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
+static inline int32_t halfedge_previous(int32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
+static inline int32_t halfedge_from(const orb_mesh *mesh, int32_t h) { return mesh->triangles[h]; }
+static inline int32_t halfedge_to(const orb_mesh *mesh, int32_t h) { return mesh->triangles[halfedge_next(h)]; }
+
+/* Reads and checks the arrays: finite coordinates, indices, manifold edges and vertices, orientation. Components,
+ * boundary and genus are counted, not judged. O(n). On failure *mesh is NULL and nothing is left allocated. */
+orb_status mesh_create(const orb_mesh_arrays *arrays, orb_mesh **mesh, orb_error *error);
+void mesh_free(orb_mesh *mesh);
+
+/* One component, no boundary, genus 0; else the error that names what is there. */
+orb_status mesh_require_sphere(const orb_mesh *mesh, orb_error *error);
+
+double mesh_edge_length(const orb_mesh *mesh, int32_t halfedge);
+double mesh_triangle_area(const orb_mesh *mesh, int32_t triangle);
+
+#endif
