@@ -85,7 +85,7 @@ orb_isometry isometry_to_origin(const orb_geometry *geometry, orb_point p);
 orb_isometry isometry_rotation_about_origin(double angle);
 /* the one that takes p to p1 and the direction of q to that of q1 */
 orb_isometry isometry_pairing(const orb_geometry *geometry, orb_point p, orb_point q, orb_point p1, orb_point q1);
-/* whether the two are the same motion, up to `tolerance` relative to their size */
-bool isometry_same(orb_isometry g, orb_isometry h, double tolerance);
+/* whether the two move the origin to within `tolerance` of one another and turn it alike */
+bool isometry_same(const orb_geometry *geometry, orb_isometry g, orb_isometry h, double tolerance);
 
 #endif

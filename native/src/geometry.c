@@ -1,0 +1,205 @@
+/* The three geometries in one chart. SPDX-License-Identifier: GPL-3.0-or-later */
+#include "geometry.h"
+
+#include <stddef.h>
+
+#include "double_double.h"
+
+struct orb_geometry {
+    int K;
+    const char *name;
+    bool any_start;
+    double (*tan)(double), (*atan)(double), (*sin)(double), (*cos)(double);
+};
+
+static double same(double r) { return r; }
+static double one(double r) { return r - r + 1; /* NaN stays NaN */ }
+
+static const orb_geometry geometries[] = {
+    {-1, "hyperbolic", false, tanh, atanh, sinh, cosh},
+    {0, "euclidean", true, same, same, same, one},
+    {+1, "spherical", false, tan, atan, sin, cos},
+};
+
+const orb_geometry *geometry_of_curvature(int curvature) { return &geometries[1 + (curvature > 0) - (curvature < 0)]; }
+const char *geometry_name(const orb_geometry *geometry) { return geometry->name; }
+int geometry_curvature(const orb_geometry *geometry) { return geometry->K; }
+bool geometry_any_start(const orb_geometry *geometry) { return geometry->any_start; }
+double geometry_sin(const orb_geometry *geometry, double r) { return geometry->sin(r); }
+double geometry_cos(const orb_geometry *geometry, double r) { return geometry->cos(r); }
+double geometry_tan(const orb_geometry *geometry, double r) { return geometry->tan(r); }
+double geometry_atan(const orb_geometry *geometry, double t) { return geometry->atan(t); }
+
+/* ---------------------------------------------------------------------------------------- double-double and back */
+
+static ddc wide(orb_point p) { return (ddc){{creal(p.z), creal(p.low)}, {cimag(p.z), cimag(p.low)}}; }
+
+static orb_point narrow(ddc a) { return (orb_point){CMPLX(a.re.hi, a.im.hi), CMPLX(a.re.lo, a.im.lo)}; }
+
+/* K times a */
+static ddc curved(const orb_geometry *geometry, ddc a) { return ddc_scale(a, dd_of(geometry->K)); }
+
+/* 1 + K |z|^2, the conformal factor's denominator */
+static dd conformal(const orb_geometry *geometry, orb_point p) {
+    return dd_add(dd_of(1), dd_multiply(dd_of(geometry->K), ddc_norm(wide(p))));
+}
+
+/* the same in double, exact to the last digit: what is left of 1 - |z|^2 far out is all that counts there */
+static double conformal_factor(const orb_geometry *geometry, orb_point p) {
+    double x = creal(p.z), y = cimag(p.z);
+    if (geometry->K >= 0)
+        return 1 + geometry->K * (x * x + y * y);
+    dd xx = dd_two_product(x, x), yy = dd_two_product(y, y);
+    dd s = dd_two_sum(1, -xx.hi), t = dd_two_sum(s.hi, -yy.hi);
+    return t.hi + (t.lo + s.lo - xx.lo - yy.lo - 2 * (x * creal(p.low) + y * cimag(p.low)));
+}
+
+/* ---------------------------------------------------------------------------------------------------- points */
+
+orb_point point_of(double complex z) { return (orb_point){z, 0}; }
+orb_point point_conjugate(orb_point p) { return (orb_point){conj(p.z), conj(p.low)}; }
+
+double complex geometry_toward(const orb_geometry *geometry, orb_point p, orb_point q) {
+    double complex difference = (q.z - p.z) + (q.low - p.low);
+    return difference / (conformal_factor(geometry, p) + geometry->K * conj(p.z) * difference);
+}
+
+/* atan_K(r) / r */
+static double atan_ratio(const orb_geometry *geometry, double r) { return r > 0 ? geometry->atan(r) / r : 1; }
+
+double geometry_distance(const orb_geometry *geometry, orb_point p, orb_point q) {
+    return 2 * geometry->atan(cabs(geometry_toward(geometry, p, q)));
+}
+
+double complex geometry_log(const orb_geometry *geometry, orb_point p, orb_point q) {
+    double complex t = geometry_toward(geometry, p, q);
+    return 2 * atan_ratio(geometry, cabs(t)) * t;
+}
+
+orb_point geometry_exp(const orb_geometry *geometry, orb_point p, double complex v) {
+    double length = cabs(v);
+    double complex t = length > 0 ? geometry->tan(length / 2) / length * v : 0;
+    double complex step = t * conformal_factor(geometry, p) / (1 - geometry->K * conj(p.z) * t);
+    dd re = dd_add((dd){creal(p.z), creal(p.low)}, dd_of(creal(step)));
+    dd im = dd_add((dd){cimag(p.z), cimag(p.low)}, dd_of(cimag(step)));
+    return narrow((ddc){re, im});
+}
+
+orb_edge_terms geometry_edge(const orb_geometry *geometry, orb_point p, orb_point q) {
+    /* With r = tan_K(d / 2):  tan_K d = 2 r / (1 - K r^2),  sin_K d = 2 r / (1 + K r^2). */
+    double complex t = geometry_toward(geometry, p, q), s = geometry_toward(geometry, q, p);
+    double r = cabs(t), ratio = atan_ratio(geometry, r), bend = geometry->K * r * r, other = cabs(s);
+    orb_edge_terms edge = {2 * r * ratio, 1, 1, ratio * (1 - bend), ratio * (1 + bend)};
+    if (r > 0 && other > 0) {
+        edge.at_p = t / r;
+        edge.at_q = -s / other;
+    }
+    return edge;
+}
+
+double complex geometry_transport(const orb_geometry *geometry, orb_point p, orb_point q) {
+    orb_edge_terms edge = geometry_edge(geometry, p, q);
+    return edge.at_q * conj(edge.at_p);
+}
+
+double geometry_triangle_area(const orb_geometry *geometry, double complex s, double complex t) {
+    double complex c = conj(s) * t;
+    if (geometry->K == 0)
+        return 2 * cimag(c);
+    return 2 * atan2(cimag(c), 1 + geometry->K * creal(c)); /* the angle excess, or defect, halved: arg(1 + K c) / K */
+}
+
+void geometry_coordinates(const orb_geometry *geometry, orb_point p, double value[3], double low[3]) {
+    ddc z = wide(p);
+    dd factor = conformal(geometry, p);
+    dd x[3] = {dd_add(z.re, z.re), dd_add(z.im, z.im), dd_add(dd_of(2), dd_negative(factor))};
+    for (int k = 0; k < 3; k++) {
+        dd quotient = dd_divide(x[k], factor);
+        value[k] = quotient.hi;
+        low[k] = quotient.lo;
+    }
+}
+
+double complex geometry_convex_chart(const orb_geometry *geometry, orb_point p) {
+    double x = creal(p.z), y = cimag(p.z);
+    return 2 * p.z / (1 + geometry->K * geometry->K * (x * x + y * y));
+}
+
+orb_point geometry_from_convex_chart(const orb_geometry *geometry, double complex w) {
+    double x = creal(w), y = cimag(w);
+    return point_of(w / (1 + sqrt(fmax(0, 1 - geometry->K * geometry->K * (x * x + y * y)))));
+}
+
+/* ------------------------------------------------------------------------------------------------- isometries */
+
+orb_isometry isometry_identity(void) { return (orb_isometry){point_of(1), point_of(0)}; }
+
+/* Only the ratio of a and b counts: keep |a| within [1, 2) by an exact power of two. */
+static orb_isometry scaled(ddc a, ddc b) {
+    int exponent = 0;
+    frexp(hypot(a.re.hi, a.im.hi), &exponent);
+    dd scale = dd_of(ldexp(1, 1 - exponent));
+    return (orb_isometry){narrow(ddc_scale(a, scale)), narrow(ddc_scale(b, scale))};
+}
+
+orb_isometry isometry_compose(const orb_geometry *geometry, orb_isometry outer, orb_isometry inner) {
+    ddc a1 = wide(outer.a), b1 = wide(outer.b), a2 = wide(inner.a), b2 = wide(inner.b);
+    ddc a = ddc_add(ddc_multiply(a1, a2), curved(geometry, ddc_scale(ddc_multiply(b1, ddc_conjugate(b2)), dd_of(-1))));
+    ddc b = ddc_add(ddc_multiply(a1, b2), ddc_multiply(b1, ddc_conjugate(a2)));
+    return scaled(a, b);
+}
+
+orb_isometry isometry_inverse(orb_isometry h) {
+    return (orb_isometry){point_conjugate(h.a), {-h.b.z, -h.b.low}};
+}
+
+/* conj(a) - K conj(b) z */
+static ddc denominator(const orb_geometry *geometry, orb_isometry h, ddc z) {
+    ddc bz = ddc_multiply(ddc_conjugate(wide(h.b)), z);
+    return ddc_add(ddc_conjugate(wide(h.a)), curved(geometry, ddc_scale(bz, dd_of(-1))));
+}
+
+orb_point isometry_apply(const orb_geometry *geometry, orb_isometry h, orb_point p) {
+    ddc z = wide(p);
+    return narrow(ddc_divide(ddc_add(ddc_multiply(wide(h.a), z), wide(h.b)), denominator(geometry, h, z)));
+}
+
+double complex isometry_turn(const orb_geometry *geometry, orb_isometry h, orb_point p) {
+    double complex q = conj(narrow(denominator(geometry, h, wide(p))).z), unit = q / cabs(q);
+    return unit * unit;
+}
+
+orb_isometry isometry_to_origin(const orb_geometry *geometry, orb_point p) {
+    (void)geometry; /* z -> (z - p) / (1 + K conj(p) z) in all three */
+    return (orb_isometry){point_of(1), {-p.z, -p.low}};
+}
+
+orb_isometry isometry_rotation_about_origin(double angle) {
+    return (orb_isometry){point_of(CMPLX(cos(angle / 2), sin(angle / 2))), point_of(0)};
+}
+
+/* The rotation about the origin that takes the direction of s to that of t: a is on the bisector. */
+static orb_isometry rotation_between(orb_point s, orb_point t) {
+    ddc turn = ddc_multiply(wide(t), ddc_conjugate(wide(s)));
+    dd size = dd_sqrt(ddc_norm(turn));
+    ddc a = turn;
+    if (turn.re.hi >= 0) {
+        a.re = dd_add(turn.re, size);
+    } else { /* i (|u| - u), for directions nearly opposite */
+        a.re = turn.im;
+        a.im = dd_add(size, dd_negative(turn.re));
+    }
+    return scaled(a, (ddc){dd_of(0), dd_of(0)});
+}
+
+orb_isometry isometry_pairing(const orb_geometry *geometry, orb_point p, orb_point q, orb_point p1, orb_point q1) {
+    orb_isometry home = isometry_to_origin(geometry, p), home1 = isometry_to_origin(geometry, p1);
+    orb_isometry turn = rotation_between(isometry_apply(geometry, home, q), isometry_apply(geometry, home1, q1));
+    return isometry_compose(geometry, isometry_inverse(home1), isometry_compose(geometry, turn, home));
+}
+
+bool isometry_same(const orb_geometry *geometry, orb_isometry g, orb_isometry h, double tolerance) {
+    orb_point origin = point_of(0), g0 = isometry_apply(geometry, g, origin), h0 = isometry_apply(geometry, h, origin);
+    double complex turn = isometry_turn(geometry, g, origin) - isometry_turn(geometry, h, origin);
+    return geometry_distance(geometry, g0, h0) <= tolerance && cabs(turn) <= tolerance;
+}
