@@ -1,0 +1,323 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender meshes <-> NumPy arrays, with the fast calls; the only file that knows how Blender's versions differ.
+
+Everything here reads and writes the mesh of an object that is *not* in edit mode (attribute arrays have length 0
+there): wrap it in `object_mode(obj)`. Features are tested for, never version numbers.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Iterator, Optional
+
+import bpy
+import numpy as np
+
+UV_MAP = "Orbifold"
+SHAPE_KEY = "Orbifold Sphere"
+# Edges that we, not the user, made seams: they are taken back when the object is unwrapped anew.
+CUT_ATTRIBUTE = "orbifold_cut"
+MAX_UV_MAPS = 8
+
+
+class BlenderMeshError(Exception):
+    """The mesh cannot take what is to be written; the message says what to do."""
+
+
+@dataclass(frozen=True)
+class MeshArrays:
+    """A mesh as triangles, and where each triangle's corners are in it."""
+
+    vertices: np.ndarray  # (n, 3) float64, in the object's own coordinates
+    triangles: np.ndarray  # (m, 3) int32 vertices
+    loops: np.ndarray  # (m, 3) int32 face corners ("loops")
+    polygons: np.ndarray  # (m,) int32 the face that each triangle is a part of
+    n_loops: int
+
+    @property
+    def all_triangles(self) -> bool:
+        return self.n_loops == 3 * len(self.triangles) == 3 * (int(self.polygons.max(initial=-1)) + 1)
+
+
+# ---------------------------------------------------------------------------------------------------- modes
+
+
+@contextmanager
+def object_mode(obj: bpy.types.Object) -> Iterator[None]:
+    """Leave edit mode (and paint modes) for a while and come back. `obj` is the active object."""
+    mode = obj.mode
+    if mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    try:
+        yield
+    finally:
+        if obj.mode != mode:
+            bpy.ops.object.mode_set(mode=mode)
+
+
+# -------------------------------------------------------------------------------------------------- reading
+
+
+def read_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
+    """(n, 3) float64."""
+    coordinates = np.empty(len(mesh.vertices) * 3, np.float32)
+    position = mesh.attributes.get("position")
+    if position is not None and len(position.data) == len(mesh.vertices):
+        position.data.foreach_get("vector", coordinates)
+    else:
+        mesh.vertices.foreach_get("co", coordinates)
+    return coordinates.reshape(-1, 3).astype(np.float64)
+
+
+def read_loop_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
+    """(loops,) int32: the vertex of each face corner."""
+    vertices = np.empty(len(mesh.loops), np.int32)
+    corner = mesh.attributes.get(".corner_vert")
+    if corner is not None:
+        corner.data.foreach_get("value", vertices)
+    else:
+        mesh.loops.foreach_get("vertex_index", vertices)
+    return vertices
+
+
+def read_edges(mesh: bpy.types.Mesh) -> np.ndarray:
+    """(edges, 2) int32."""
+    edges = np.empty(len(mesh.edges) * 2, np.int32)
+    attribute = mesh.attributes.get(".edge_verts")
+    if attribute is not None:
+        attribute.data.foreach_get("value", edges)
+    else:
+        mesh.edges.foreach_get("vertices", edges)
+    return edges.reshape(-1, 2)
+
+
+def read_mesh(mesh: bpy.types.Mesh) -> MeshArrays:
+    """Triangles of the whole mesh, hidden faces included. Quads and n-gons are triangulated, the mesh is not changed."""
+    n_loops, n_polygons = len(mesh.loops), len(mesh.polygons)
+    loop_vertices = read_loop_vertices(mesh)
+    loops, polygons = _triangle_loops(mesh, n_loops, n_polygons)
+    return MeshArrays(read_vertices(mesh), loop_vertices[loops], loops, polygons, n_loops)
+
+
+def _triangle_loops(mesh: bpy.types.Mesh, n_loops: int, n_polygons: int) -> tuple[np.ndarray, np.ndarray]:
+    sizes = np.empty(n_polygons, np.int32)
+    mesh.polygons.foreach_get("loop_total", sizes)
+    if n_loops == 3 * n_polygons and (sizes == 3).all():
+        starts = np.empty(n_polygons, np.int32)
+        mesh.polygons.foreach_get("loop_start", starts)
+        return starts[:, None] + np.arange(3, dtype=np.int32), np.arange(n_polygons, dtype=np.int32)
+    if hasattr(mesh, "calc_loop_triangles"):
+        mesh.calc_loop_triangles()
+    n_triangles = len(mesh.loop_triangles)
+    loops = np.empty(n_triangles * 3, np.int32)
+    polygons = np.empty(n_triangles, np.int32)
+    mesh.loop_triangles.foreach_get("loops", loops)
+    mesh.loop_triangles.foreach_get("polygon_index", polygons)
+    return loops.reshape(-1, 3), polygons
+
+
+# -------------------------------------------------------------------------------------------------- writing
+
+
+def write_uv(mesh: bpy.types.Mesh, arrays: MeshArrays, uv: np.ndarray, name: str = UV_MAP) -> None:
+    """`uv` (m, 3, 2) per triangle corner -> the UV map `name`, created or replaced, and made the active one.
+
+    The triangles of one face must agree at the corners that they share (polygons.py sees to it).
+    """
+    corners = np.zeros((arrays.n_loops, 2), np.float32)
+    corners[arrays.loops.ravel()] = uv.reshape(-1, 2)
+    layer = _uv_layer(mesh, name)
+    if hasattr(layer, "uv"):
+        layer.uv.foreach_set("vector", corners.ravel())
+    else:
+        layer.data.foreach_set("uv", corners.ravel())
+    mesh.uv_layers.active = mesh.uv_layers[name]
+    mesh.update()
+
+
+def check_uv_space(mesh: bpy.types.Mesh, name: str = UV_MAP) -> None:
+    """Raise BlenderMeshError where write_uv could not create its UV map."""
+    if name in mesh.uv_layers:
+        return
+    if len(mesh.uv_layers) >= MAX_UV_MAPS:
+        raise BlenderMeshError(f"The mesh has {MAX_UV_MAPS} UV maps, which is all that Blender allows: remove one")
+    if name in mesh.attributes:
+        raise BlenderMeshError(f'The mesh has an attribute "{name}" that is not a UV map: rename it')
+
+
+def _uv_layer(mesh: bpy.types.Mesh, name: str):
+    check_uv_space(mesh, name)
+    if name not in mesh.uv_layers:
+        mesh.uv_layers.new(name=name, do_init=False)
+    return mesh.uv_layers[name]
+
+
+def read_uv(mesh: bpy.types.Mesh, name: str = UV_MAP) -> np.ndarray:
+    """(loops, 2) float32 of one UV map."""
+    layer = mesh.uv_layers[name]
+    uv = np.empty(len(mesh.loops) * 2, np.float32)
+    if hasattr(layer, "uv"):
+        layer.uv.foreach_get("vector", uv)
+    else:
+        layer.data.foreach_get("uv", uv)
+    return uv.reshape(-1, 2)
+
+
+def edge_indices(mesh: bpy.types.Mesh, pairs: np.ndarray) -> np.ndarray:
+    """(k,) int64 the edge between each pair of vertices, -1 where there is none. `pairs` (k, 2)."""
+    pairs = np.asarray(pairs, np.int64).reshape(-1, 2)
+    keys = _edge_keys(read_edges(mesh), len(mesh.vertices))
+    wanted = _edge_keys(pairs, len(mesh.vertices))
+    among = np.flatnonzero(np.isin(keys, wanted))
+    if not len(among):
+        return np.full(len(pairs), -1, np.int64)
+    order = among[np.argsort(keys[among], kind="stable")]
+    place = np.minimum(np.searchsorted(keys[order], wanted), len(order) - 1)
+    return np.where(keys[order][place] == wanted, order[place], -1)
+
+
+def _edge_keys(edges: np.ndarray, n_vertices: int) -> np.ndarray:
+    low = np.minimum(edges[:, 0], edges[:, 1]).astype(np.int64)
+    high = np.maximum(edges[:, 0], edges[:, 1]).astype(np.int64)
+    return low * np.int64(max(n_vertices, 1)) + high
+
+
+def read_seams(mesh: bpy.types.Mesh) -> np.ndarray:
+    """(edges,) bool."""
+    seams = np.empty(len(mesh.edges), bool)
+    mesh.edges.foreach_get("use_seam", seams)
+    return seams
+
+
+def mark_seams(mesh: bpy.types.Mesh, pairs: Optional[np.ndarray]) -> None:
+    """Make the edges between these pairs of vertices seams, and take back those of an earlier call; the user's own
+    seams stay. None only takes back."""
+    seams = read_seams(mesh)
+    old = mesh.attributes.get(CUT_ATTRIBUTE)
+    if old is not None and (old.domain != "EDGE" or old.data_type != "BOOLEAN"):
+        mesh.attributes.remove(old)
+        old = None
+    if old is not None:
+        ours = np.empty(len(mesh.edges), bool)
+        old.data.foreach_get("value", ours)
+        seams &= ~ours
+    cut = np.zeros(len(mesh.edges), bool)
+    if pairs is not None and len(pairs):
+        found = edge_indices(mesh, pairs)
+        cut[found[found >= 0]] = True
+    mesh.edges.foreach_set("use_seam", seams | cut)
+    attribute = mesh.attributes.get(CUT_ATTRIBUTE) or mesh.attributes.new(CUT_ATTRIBUTE, "BOOLEAN", "EDGE")
+    attribute.data.foreach_set("value", cut & ~seams)
+    mesh.update()
+
+
+def write_shape_key(obj: bpy.types.Object, positions: np.ndarray, name: str = SHAPE_KEY) -> bpy.types.ShapeKey:
+    """`positions` (n, 3) in the object's coordinates -> a shape key, created or replaced."""
+    mesh = obj.data
+    if mesh.shape_keys is None:
+        obj.shape_key_add(name="Basis", from_mix=False)
+    keys = mesh.shape_keys.key_blocks
+    key = keys.get(name) or obj.shape_key_add(name=name, from_mix=False)
+    flat = np.ascontiguousarray(positions, np.float32).ravel()
+    if hasattr(key, "points"):
+        key.points.foreach_set("co", flat)
+    else:
+        key.data.foreach_set("co", flat)
+    mesh.update()
+    return key
+
+
+def read_shape_key(obj: bpy.types.Object, name: str = SHAPE_KEY) -> np.ndarray:
+    """(n, 3) float32."""
+    key = obj.data.shape_keys.key_blocks[name]
+    flat = np.empty(len(obj.data.vertices) * 3, np.float32)
+    (key.points if hasattr(key, "points") else key.data).foreach_get("co", flat)
+    return flat.reshape(-1, 3)
+
+
+# ------------------------------------------------------------------------------------------------ attributes
+
+
+def read_int_attribute(mesh: bpy.types.Mesh, name: str) -> Optional[np.ndarray]:
+    """(n,) int32 of a whole-number vertex attribute; None where the mesh has none of this name."""
+    attribute = mesh.attributes.get(name)
+    if attribute is None or attribute.domain != "POINT" or attribute.data_type != "INT":
+        return None
+    values = np.empty(len(mesh.vertices), np.int32)
+    attribute.data.foreach_get("value", values)
+    return values
+
+
+def write_int_attribute(mesh: bpy.types.Mesh, name: str, values: np.ndarray) -> None:
+    attribute = mesh.attributes.get(name)
+    if attribute is not None and (attribute.domain != "POINT" or attribute.data_type != "INT"):
+        mesh.attributes.remove(attribute)
+        attribute = None
+    if attribute is None:
+        attribute = mesh.attributes.new(name, "INT", "POINT")
+    attribute.data.foreach_set("value", np.ascontiguousarray(values, np.int32))
+
+
+def write_corner_colour(mesh: bpy.types.Mesh, arrays: MeshArrays, colour: np.ndarray, name: str) -> None:
+    """`colour` (m, 3, 4) per triangle corner -> a colour attribute on face corners."""
+    corners = np.ones((arrays.n_loops, 4), np.float32)
+    corners[arrays.loops.ravel()] = colour.reshape(-1, 4)
+    attribute = mesh.attributes.get(name)
+    if attribute is not None and (attribute.domain != "CORNER" or attribute.data_type != "FLOAT_COLOR"):
+        mesh.attributes.remove(attribute)
+        attribute = None
+    if attribute is None:
+        attribute = mesh.attributes.new(name, "FLOAT_COLOR", "CORNER")
+    attribute.data.foreach_set("color", corners.ravel())
+    mesh.update()
+
+
+# ------------------------------------------------------------------------------------------------- selection
+
+
+def select_elements(mesh: bpy.types.Mesh, vertices: np.ndarray, edges: np.ndarray, polygons: np.ndarray) -> None:
+    """Select these and nothing else, uncovering them where they are hidden. Indices of vertices, edges, polygons."""
+    chosen = np.zeros(len(mesh.polygons), bool)
+    chosen[polygons] = True
+    edge_chosen = np.zeros(len(mesh.edges), bool)
+    edge_chosen[edges] = True
+    loop_total = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_total", loop_total)
+    in_chosen = np.repeat(chosen, loop_total)
+    loop_edges = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("edge_index", loop_edges)
+    edge_chosen[loop_edges[in_chosen]] = True
+    vertex_chosen = np.zeros(len(mesh.vertices), bool)
+    vertex_chosen[vertices] = True
+    vertex_chosen[read_edges(mesh)[edge_chosen].ravel()] = True
+    for elements, flags in ((mesh.vertices, vertex_chosen), (mesh.edges, edge_chosen), (mesh.polygons, chosen)):
+        hidden = np.empty(len(elements), bool)
+        elements.foreach_get("hide", hidden)
+        elements.foreach_set("hide", hidden & ~flags)
+        elements.foreach_set("select", flags)
+    mesh.update()
+
+
+# ---------------------------------------------------------------------------------------------------- nodes
+
+
+def principled_input(node: bpy.types.Node, *names: str):
+    """The first of the sockets `names` that this version's Principled node has, or None."""
+    for name in names:
+        if name in node.inputs:
+            return node.inputs[name]
+    return None
+
+
+def enable_nodes(material: bpy.types.Material) -> None:
+    """From version 5 on a material always has nodes and the switch is deprecated."""
+    if material.node_tree is None:
+        material.use_nodes = True
+
+
+def group_socket(tree: bpy.types.NodeTree, name: str, direction: str, socket: str):
+    """Add an input or output (`direction` "INPUT" or "OUTPUT") to a node group."""
+    if hasattr(tree, "interface"):
+        return tree.interface.new_socket(name=name, in_out=direction, socket_type=socket)
+    return (tree.inputs if direction == "INPUT" else tree.outputs).new(socket, name)
