@@ -16,6 +16,16 @@ __attribute__((format(printf, 7, 8))) orb_status error_set_elements(orb_error *e
                                                                     int32_t entries, int64_t found,
                                                                     const char *format, ...);
 
+/* Elements found at fault, in any sequence: the least ORB_MAX_ELEMENTS entries are kept, ascending (edges by lower
+ * vertex, then higher), and all are counted. Start from {0}; use one record for one kind of element. */
+typedef struct orb_found {
+    int32_t entries; /* used in `elements`; an edge takes two */
+    int32_t elements[ORB_MAX_ELEMENTS];
+    int64_t found;
+} orb_found;
+void found_add(orb_found *found, int32_t element);
+void found_add_edge(orb_found *found, int32_t vertex, int32_t other);
+
 /* "out of memory" with its status; the usual last line of a failed allocation. */
 orb_status error_memory(orb_error *error);
 

@@ -1,0 +1,458 @@
+/* Triangle arrays -> half-edges. SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * The half-edges are sorted by their edge (two counting sorts), so that the half-edges of one edge lie side by side;
+ * every check and every link is then one pass over the arrays. */
+#include "mesh.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What mesh_create needs only while it runs. */
+typedef struct workspace {
+    int32_t *order; /* [n_triangles*3] half-edges sorted by lower, then higher vertex of their edge */
+    int32_t *count; /* [n_vertices] */
+} workspace;
+
+static int32_t lower_vertex(const orb_mesh *mesh, int32_t h)
+{
+    const int32_t a = halfedge_from(mesh, h), b = halfedge_to(mesh, h);
+    return a < b ? a : b;
+}
+
+static int32_t higher_vertex(const orb_mesh *mesh, int32_t h)
+{
+    const int32_t a = halfedge_from(mesh, h), b = halfedge_to(mesh, h);
+    return a < b ? b : a;
+}
+
+static int32_t opposite_vertex(const orb_mesh *mesh, int32_t h)
+{
+    return mesh->triangles[halfedge_previous(h)];
+}
+
+static bool same_edge(const orb_mesh *mesh, int32_t h, int32_t g)
+{
+    return lower_vertex(mesh, h) == lower_vertex(mesh, g) && higher_vertex(mesh, h) == higher_vertex(mesh, g);
+}
+
+/* One past the last entry of `order` that lies on the edge of order[begin]. */
+static int32_t edge_end(const orb_mesh *mesh, const int32_t *order, int32_t begin)
+{
+    const int32_t n = 3 * mesh->n_triangles;
+    int32_t end = begin + 1;
+    while (end < n && same_edge(mesh, order[begin], order[end])) end++;
+    return end;
+}
+
+/* --- the arrays, before anything is built on them ------------------------------------------------------------- */
+
+static orb_status check_arguments(const orb_mesh_arrays *arrays, orb_error *error)
+{
+    if (!arrays) return error_set(error, ORB_BAD_ARGUMENT, "the mesh is a null pointer: hand over its arrays");
+    if (arrays->n_vertices < 0 || arrays->n_triangles < 0)
+        return error_set(error, ORB_BAD_ARGUMENT, "the mesh has %d vertices and %d triangles: no count may be negative",
+                         (int)arrays->n_vertices, (int)arrays->n_triangles);
+    if (arrays->n_triangles == 0)
+        return error_set(error, ORB_BAD_ARGUMENT, "the mesh has no triangles: give its surface faces");
+    if (!arrays->triangles || (!arrays->vertices && arrays->n_vertices > 0))
+        return error_set(error, ORB_BAD_ARGUMENT, "the array of %s is a null pointer: hand over both arrays",
+                         arrays->triangles ? "vertices" : "triangles");
+    if (arrays->n_triangles > INT32_MAX / 3 || arrays->n_vertices > INT32_MAX / 3)
+        return error_set(error, ORB_BAD_ARGUMENT,
+                         "the mesh has %d vertices and %d triangles, of each at most %d can be counted: decimate it",
+                         (int)arrays->n_vertices, (int)arrays->n_triangles, (int)(INT32_MAX / 3));
+    return ORB_OK;
+}
+
+static orb_status check_coordinates(const orb_mesh_arrays *arrays, orb_error *error)
+{
+    orb_found bad = {0};
+    for (int32_t v = 0; v < arrays->n_vertices; v++) {
+        const double *p = arrays->vertices + 3 * (size_t)v;
+        if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2])) found_add(&bad, v);
+    }
+    if (bad.found == 0) return ORB_OK;
+    return error_set_elements(error, ORB_NON_FINITE, ORB_VERTEX, bad.elements, bad.entries, bad.found,
+                              "%lld %s a coordinate that is not a finite number, first %d: delete them, or undo the "
+                              "modifier or shape key that made them",
+                              (long long)bad.found, bad.found == 1 ? "vertex has" : "vertices have",
+                              (int)bad.elements[0]);
+}
+
+static orb_status check_indices(const orb_mesh_arrays *arrays, orb_error *error)
+{
+    orb_found outside = {0}, degenerate = {0};
+    for (int32_t t = 0; t < arrays->n_triangles; t++) {
+        const int32_t *corner = arrays->triangles + 3 * (size_t)t;
+        bool inside = true;
+        for (int c = 0; c < 3; c++) inside = inside && corner[c] >= 0 && corner[c] < arrays->n_vertices;
+        if (!inside) found_add(&outside, t);
+        if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) found_add(&degenerate, t);
+    }
+    if (outside.found > 0) {
+        const int32_t *corner = arrays->triangles + 3 * (size_t)outside.elements[0];
+        return error_set_elements(error, ORB_INDEX_OUT_OF_RANGE, ORB_TRIANGLE, outside.elements, outside.entries,
+                                  outside.found,
+                                  "%lld %s a vertex that is not there, first %d with vertices %d, %d, %d: indices "
+                                  "run from 0 to %d, so correct the triangle array",
+                                  (long long)outside.found, outside.found == 1 ? "triangle names" : "triangles name",
+                                  (int)outside.elements[0], (int)corner[0], (int)corner[1], (int)corner[2],
+                                  (int)arrays->n_vertices - 1);
+    }
+    if (degenerate.found > 0) {
+        const int32_t *corner = arrays->triangles + 3 * (size_t)degenerate.elements[0];
+        return error_set_elements(error, ORB_DEGENERATE_TRIANGLE, ORB_TRIANGLE, degenerate.elements,
+                                  degenerate.entries, degenerate.found,
+                                  "%lld %s the same vertex twice, first %d with vertices %d, %d, %d: delete them "
+                                  "(Mesh > Clean Up > Degenerate Dissolve)",
+                                  (long long)degenerate.found,
+                                  degenerate.found == 1 ? "triangle uses" : "triangles use",
+                                  (int)degenerate.elements[0], (int)corner[0], (int)corner[1], (int)corner[2]);
+    }
+    return ORB_OK;
+}
+
+/* --- sorting and linking the half-edges ----------------------------------------------------------------------- */
+
+/* Turns counts of keys 0 ... n - 1 into the place of each key's first item. */
+static void counts_to_places(int32_t *count, int32_t n)
+{
+    int32_t place = 0;
+    for (int32_t i = 0; i < n; i++) {
+        const int32_t here = count[i];
+        count[i] = place;
+        place += here;
+    }
+}
+
+/* Two stable counting sorts, the less significant key first. `first_pass` [n_triangles*3] is overwritten. */
+static void sort_halfedges(const orb_mesh *mesh, workspace *work, int32_t *first_pass)
+{
+    const int32_t n = 3 * mesh->n_triangles;
+    const size_t bytes = (size_t)mesh->n_vertices * sizeof *work->count;
+    memset(work->count, 0, bytes);
+    for (int32_t h = 0; h < n; h++) work->count[higher_vertex(mesh, h)]++;
+    counts_to_places(work->count, mesh->n_vertices);
+    for (int32_t h = 0; h < n; h++) first_pass[work->count[higher_vertex(mesh, h)]++] = h;
+
+    memset(work->count, 0, bytes);
+    for (int32_t h = 0; h < n; h++) work->count[lower_vertex(mesh, h)]++;
+    counts_to_places(work->count, mesh->n_vertices);
+    for (int32_t i = 0; i < n; i++) work->order[work->count[lower_vertex(mesh, first_pass[i])]++] = first_pass[i];
+}
+
+/* A triangle that stands on an edge, by its third vertex. */
+typedef struct standing {
+    int32_t apex, triangle;
+} standing;
+
+static int compare_standing(const void *left, const void *right)
+{
+    const standing *a = left, *b = right;
+    if (a->apex != b->apex) return a->apex < b->apex ? -1 : 1;
+    return (a->triangle > b->triangle) - (a->triangle < b->triangle);
+}
+
+/* Adds the triangles on one edge that repeat another one, of those that have the edge between their two lower
+ * vertices (so that each pair is met on one edge only). */
+static orb_status find_repeated(const orb_mesh *mesh, const int32_t *halfedges, int32_t n, orb_found *repeated,
+                                orb_error *error)
+{
+    if (n == 2) { /* nearly always; sorting it would cost more than all else here */
+        const int32_t h = halfedges[0], g = halfedges[1], apex = opposite_vertex(mesh, h);
+        if (apex == opposite_vertex(mesh, g) && apex > higher_vertex(mesh, h))
+            found_add(repeated, (h > g ? h : g) / 3);
+        return ORB_OK;
+    }
+    standing *standings = malloc((size_t)n * sizeof *standings);
+    if (!standings) return error_memory(error);
+    size_t kept = 0;
+    for (int32_t i = 0; i < n; i++) {
+        const int32_t apex = opposite_vertex(mesh, halfedges[i]);
+        if (apex > higher_vertex(mesh, halfedges[i])) standings[kept++] = (standing){apex, halfedges[i] / 3};
+    }
+    qsort(standings, kept, sizeof *standings, compare_standing);
+    for (size_t i = 1; i < kept; i++)
+        if (standings[i].apex == standings[i - 1].apex) found_add(repeated, standings[i].triangle);
+    free(standings);
+    return ORB_OK;
+}
+
+/* Repeated triangles, edges with more than two triangles, neighbours that disagree about the outside. */
+static orb_status check_edges(const orb_mesh *mesh, const int32_t *order, orb_error *error)
+{
+    orb_found repeated = {0}, crowded = {0}, disagreeing = {0};
+    for (int32_t begin = 0, end; begin < 3 * mesh->n_triangles; begin = end) {
+        end = edge_end(mesh, order, begin);
+        const int32_t h = order[begin], a = lower_vertex(mesh, h), b = higher_vertex(mesh, h);
+        if (end - begin < 2) continue;
+        const orb_status status = find_repeated(mesh, order + begin, end - begin, &repeated, error);
+        if (status != ORB_OK) return status;
+        if (end - begin > 2)
+            found_add_edge(&crowded, a, b);
+        else if (halfedge_from(mesh, h) == halfedge_from(mesh, order[begin + 1]))
+            found_add_edge(&disagreeing, a, b);
+    }
+    if (repeated.found > 0)
+        return error_set_elements(error, ORB_REPEATED_TRIANGLE, ORB_TRIANGLE, repeated.elements, repeated.entries,
+                                  repeated.found,
+                                  "%lld %s the three vertices of another one, first %d: delete the doubled faces",
+                                  (long long)repeated.found, repeated.found == 1 ? "triangle has" : "triangles have",
+                                  (int)repeated.elements[0]);
+    if (crowded.found > 0)
+        return error_set_elements(error, ORB_NON_MANIFOLD_EDGE, ORB_EDGE, crowded.elements, crowded.entries,
+                                  crowded.found,
+                                  "%lld %s more than two triangles, first %d-%d: delete the inner faces or separate "
+                                  "the parts that meet there",
+                                  (long long)crowded.found, crowded.found == 1 ? "edge has" : "edges have",
+                                  (int)crowded.elements[0], (int)crowded.elements[1]);
+    if (disagreeing.found > 0)
+        return error_set_elements(error, ORB_INCONSISTENT_ORIENTATION, ORB_EDGE, disagreeing.elements,
+                                  disagreeing.entries, disagreeing.found,
+                                  "%lld %s two triangles that face opposite ways, first %d-%d: select all and use "
+                                  "Mesh > Normals > Recalculate Outside",
+                                  (long long)disagreeing.found, disagreeing.found == 1 ? "edge joins" : "edges join",
+                                  (int)disagreeing.elements[0], (int)disagreeing.elements[1]);
+    return ORB_OK;
+}
+
+/* Numbers the edges and pairs their half-edges; at most two lie on each. */
+static orb_status link_halfedges(orb_mesh *mesh, const int32_t *order, orb_error *error)
+{
+    const int32_t n = 3 * mesh->n_triangles;
+    mesh->n_edges = 0;
+    for (int32_t i = 0; i < n; i++)
+        if (i == 0 || !same_edge(mesh, order[i - 1], order[i])) mesh->n_edges++;
+    mesh->edge_halfedge = malloc((size_t)mesh->n_edges * sizeof *mesh->edge_halfedge);
+    if (!mesh->edge_halfedge) return error_memory(error);
+    for (int32_t begin = 0, end, e = 0; begin < n; begin = end, e++) {
+        end = edge_end(mesh, order, begin);
+        const int32_t h = order[begin], g = end - begin == 2 ? order[begin + 1] : -1;
+        mesh->edge_halfedge[e] = h;
+        mesh->edge[h] = e;
+        mesh->twin[h] = g;
+        if (g < 0) continue;
+        mesh->edge[g] = e;
+        mesh->twin[g] = h;
+    }
+    return ORB_OK;
+}
+
+/* --- vertices ------------------------------------------------------------------------------------------------- */
+
+/* Gives each vertex its half-edge and checks that turning around it meets all of its triangles. `corners`
+ * [n_vertices] is overwritten. */
+static orb_status link_vertices(orb_mesh *mesh, int32_t *corners, orb_error *error)
+{
+    const int32_t n = 3 * mesh->n_triangles;
+    for (int32_t v = 0; v < mesh->n_vertices; v++) {
+        mesh->vertex_halfedge[v] = -1;
+        corners[v] = 0;
+    }
+    for (int32_t h = 0; h < n; h++) {
+        const int32_t v = halfedge_from(mesh, h);
+        if (corners[v]++ == 0 || mesh->twin[h] < 0) mesh->vertex_halfedge[v] = h;
+    }
+    orb_found pinched = {0};
+    mesh->n_used_vertices = 0;
+    for (int32_t v = 0; v < mesh->n_vertices; v++) {
+        const int32_t start = mesh->vertex_halfedge[v];
+        if (start < 0) continue;
+        mesh->n_used_vertices++;
+        int32_t met = 0, h = start;
+        do {
+            met++;
+            h = mesh->twin[halfedge_previous(h)];
+        } while (h >= 0 && h != start);
+        if (met != corners[v]) found_add(&pinched, v);
+    }
+    if (pinched.found == 0) return ORB_OK;
+    return error_set_elements(error, ORB_NON_MANIFOLD_VERTEX, ORB_VERTEX, pinched.elements, pinched.entries,
+                              pinched.found,
+                              "%lld %s parts of the surface that touch in that point only, first %d: rip it (V) or "
+                              "join the parts along an edge",
+                              (long long)pinched.found, pinched.found == 1 ? "vertex joins" : "vertices join",
+                              (int)pinched.elements[0]);
+}
+
+/* --- counts --------------------------------------------------------------------------------------------------- */
+
+/* Floods over the triangles; adds the lowest vertex of each component to `lowest`. */
+static orb_status find_components(const orb_mesh *mesh, orb_found *lowest, orb_error *error)
+{
+    bool *seen = calloc((size_t)mesh->n_triangles, sizeof *seen);
+    int32_t *stack = malloc((size_t)mesh->n_triangles * sizeof *stack);
+    orb_status status = ORB_OK;
+    if (!seen || !stack) {
+        status = error_memory(error);
+        goto done;
+    }
+    for (int32_t seed = 0; seed < mesh->n_triangles; seed++) {
+        if (seen[seed]) continue;
+        int32_t height = 0, least = INT32_MAX;
+        stack[height++] = seed;
+        seen[seed] = true;
+        while (height > 0) {
+            const int32_t t = stack[--height];
+            for (int32_t h = 3 * t; h < 3 * t + 3; h++) {
+                if (mesh->triangles[h] < least) least = mesh->triangles[h];
+                if (mesh->twin[h] < 0 || seen[mesh->twin[h] / 3]) continue;
+                seen[mesh->twin[h] / 3] = true;
+                stack[height++] = mesh->twin[h] / 3;
+            }
+        }
+        found_add(lowest, least);
+    }
+done:
+    free(seen);
+    free(stack);
+    return status;
+}
+
+/* A vertex on the boundary is left by one boundary half-edge, its vertex_halfedge. `seen` [n_vertices] is
+ * overwritten. */
+static int32_t count_boundary_loops(const orb_mesh *mesh, int32_t *seen)
+{
+    int32_t loops = 0;
+    memset(seen, 0, (size_t)mesh->n_vertices * sizeof *seen);
+    for (int32_t h = 0; h < 3 * mesh->n_triangles; h++) {
+        if (mesh->twin[h] >= 0 || seen[halfedge_from(mesh, h)]) continue;
+        loops++;
+        for (int32_t g = h; !seen[halfedge_from(mesh, g)]; g = mesh->vertex_halfedge[halfedge_to(mesh, g)])
+            seen[halfedge_from(mesh, g)] = 1;
+    }
+    return loops;
+}
+
+static orb_status count_topology(orb_mesh *mesh, workspace *work, orb_error *error)
+{
+    orb_found components = {0};
+    const orb_status status = find_components(mesh, &components, error);
+    if (status != ORB_OK) return status;
+    mesh->n_components = (int32_t)components.found;
+    mesh->n_boundary_loops = count_boundary_loops(mesh, work->count);
+    mesh->euler = mesh->n_used_vertices - mesh->n_edges + mesh->n_triangles;
+    mesh->genus = (2 * mesh->n_components - mesh->euler - mesh->n_boundary_loops) / 2;
+    return ORB_OK;
+}
+
+/* --- the module's functions ----------------------------------------------------------------------------------- */
+
+static orb_status copy_arrays(const orb_mesh_arrays *arrays, orb_mesh *mesh, orb_error *error)
+{
+    const size_t n = (size_t)arrays->n_vertices, m3 = 3 * (size_t)arrays->n_triangles;
+    mesh->n_vertices = arrays->n_vertices;
+    mesh->n_triangles = arrays->n_triangles;
+    mesh->vertices = malloc(3 * n * sizeof *mesh->vertices);
+    mesh->triangles = malloc(m3 * sizeof *mesh->triangles);
+    mesh->twin = malloc(m3 * sizeof *mesh->twin);
+    mesh->edge = malloc(m3 * sizeof *mesh->edge);
+    mesh->vertex_halfedge = malloc(n * sizeof *mesh->vertex_halfedge);
+    if (!mesh->vertices || !mesh->triangles || !mesh->twin || !mesh->edge || !mesh->vertex_halfedge)
+        return error_memory(error);
+    memcpy(mesh->vertices, arrays->vertices, 3 * n * sizeof *mesh->vertices);
+    memcpy(mesh->triangles, arrays->triangles, m3 * sizeof *mesh->triangles);
+    return ORB_OK;
+}
+
+orb_status mesh_create(const orb_mesh_arrays *arrays, orb_mesh **mesh, orb_error *error)
+{
+    workspace work = {0};
+    orb_mesh *made = NULL;
+    *mesh = NULL;
+    orb_status status = check_arguments(arrays, error);
+    if (status == ORB_OK) status = check_coordinates(arrays, error);
+    if (status == ORB_OK) status = check_indices(arrays, error);
+    if (status != ORB_OK) return status;
+
+    made = calloc(1, sizeof *made);
+    work.order = malloc(3 * (size_t)arrays->n_triangles * sizeof *work.order);
+    work.count = malloc((size_t)arrays->n_vertices * sizeof *work.count);
+    if (!made || !work.order || !work.count) {
+        status = error_memory(error);
+        goto done;
+    }
+    if ((status = copy_arrays(arrays, made, error)) != ORB_OK) goto done;
+    sort_halfedges(made, &work, made->edge); /* the edges have no numbers yet, so their array is free for it */
+    if ((status = check_edges(made, work.order, error)) != ORB_OK) goto done;
+    if ((status = link_halfedges(made, work.order, error)) != ORB_OK) goto done;
+    if ((status = link_vertices(made, work.count, error)) != ORB_OK) goto done;
+    if ((status = count_topology(made, &work, error)) != ORB_OK) goto done;
+    *mesh = made;
+    made = NULL;
+done:
+    free(work.order);
+    free(work.count);
+    mesh_free(made);
+    return status;
+}
+
+void mesh_free(orb_mesh *mesh)
+{
+    if (!mesh) return;
+    free(mesh->vertices);
+    free(mesh->triangles);
+    free(mesh->twin);
+    free(mesh->edge);
+    free(mesh->edge_halfedge);
+    free(mesh->vertex_halfedge);
+    free(mesh);
+}
+
+orb_status mesh_require_sphere(const orb_mesh *mesh, orb_error *error)
+{
+    if (mesh->n_components != 1) {
+        orb_found lowest = {0};
+        const orb_status status = find_components(mesh, &lowest, error);
+        if (status != ORB_OK) return status;
+        return error_set_elements(error, ORB_SEVERAL_COMPONENTS, ORB_VERTEX, lowest.elements, lowest.entries,
+                                  lowest.found,
+                                  "the mesh has %d separate parts, for example those of vertices %d and %d: separate "
+                                  "them into objects (P) or delete the loose ones",
+                                  (int)mesh->n_components, (int)lowest.elements[0], (int)lowest.elements[1]);
+    }
+    if (mesh->n_boundary_loops > 0) {
+        orb_found open = {0};
+        for (int32_t e = 0; e < mesh->n_edges; e++) {
+            const int32_t h = mesh->edge_halfedge[e];
+            if (mesh->twin[h] < 0) found_add_edge(&open, halfedge_from(mesh, h), halfedge_to(mesh, h));
+        }
+        return error_set_elements(error, ORB_BOUNDARY, ORB_EDGE, open.elements, open.entries, open.found,
+                                  "the mesh is open: %d %s with %lld edges in all, first %d-%d: close them "
+                                  "(Mesh > Clean Up > Fill Holes, or select a hole's edges and press Alt+F)",
+                                  (int)mesh->n_boundary_loops, mesh->n_boundary_loops == 1 ? "hole" : "holes",
+                                  (long long)open.found, (int)open.elements[0], (int)open.elements[1]);
+    }
+    if (mesh->genus != 0)
+        return error_set(error, ORB_WRONG_GENUS,
+                         "the mesh is not sphere-like but has %d %s (Euler characteristic %d): cut each open and "
+                         "fill the holes, or remesh it without them",
+                         (int)mesh->genus, mesh->genus == 1 ? "handle or tunnel" : "handles or tunnels",
+                         (int)mesh->euler);
+    return ORB_OK;
+}
+
+/* Length of a vector; hypot only where the squares leave the range of doubles. */
+static double length3(double x, double y, double z)
+{
+    const double squares = x * x + y * y + z * z;
+    return squares > 1e-280 && squares < 1e300 ? sqrt(squares) : hypot(hypot(x, y), z);
+}
+
+double mesh_edge_length(const orb_mesh *mesh, int32_t halfedge)
+{
+    const double *p = mesh->vertices + 3 * (size_t)halfedge_from(mesh, halfedge);
+    const double *q = mesh->vertices + 3 * (size_t)halfedge_to(mesh, halfedge);
+    return length3(q[0] - p[0], q[1] - p[1], q[2] - p[2]);
+}
+
+double mesh_triangle_area(const orb_mesh *mesh, int32_t triangle)
+{
+    const int32_t *corner = mesh->triangles + 3 * (size_t)triangle;
+    const double *p = mesh->vertices + 3 * (size_t)corner[0];
+    const double *q = mesh->vertices + 3 * (size_t)corner[1];
+    const double *r = mesh->vertices + 3 * (size_t)corner[2];
+    const double u[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, v[3] = {r[0] - p[0], r[1] - p[1], r[2] - p[2]};
+    return 0.5 * length3(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]);
+}
