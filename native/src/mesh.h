@@ -21,7 +21,7 @@ typedef struct orb_mesh {
     int32_t n_components;      /* of triangles joined by edges; isolated vertices do not count */
     int32_t n_boundary_loops;
     int32_t euler;             /* used vertices - edges + triangles */
-    int32_t genus;             /* of the closed-up surface; summed over the components */
+    int32_t genus;             /* handles of the surface with its boundary loops closed, over all components */
 } orb_mesh;
 
 static inline int32_t halfedge_next(int32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
@@ -29,8 +29,14 @@ static inline int32_t halfedge_previous(int32_t h) { return h % 3 == 0 ? h + 2 :
 static inline int32_t halfedge_from(const orb_mesh *mesh, int32_t h) { return mesh->triangles[h]; }
 static inline int32_t halfedge_to(const orb_mesh *mesh, int32_t h) { return mesh->triangles[halfedge_next(h)]; }
 
+/* The part of mesh_create's checks that needs no half-edges: arguments and counts, finite coordinates (of isolated
+ * vertices too), index range, triangles that use a vertex twice. */
+orb_status mesh_check_arrays(const orb_mesh_arrays *arrays, orb_error *error);
+
 /* Reads and checks the arrays: finite coordinates, indices, manifold edges and vertices, orientation. Components,
- * boundary and genus are counted, not judged. O(n). On failure *mesh is NULL and nothing is left allocated. */
+ * boundary and genus are counted, not judged. O(n). The first kind of defect is reported, in this order: those of
+ * mesh_check_arrays, ORB_REPEATED_TRIANGLE (the repetitions are named, not the first one), ORB_NON_MANIFOLD_EDGE,
+ * ORB_INCONSISTENT_ORIENTATION, ORB_NON_MANIFOLD_VERTEX. On failure *mesh is NULL and nothing is left allocated. */
 orb_status mesh_create(const orb_mesh_arrays *arrays, orb_mesh **mesh, orb_error *error);
 void mesh_free(orb_mesh *mesh);
 

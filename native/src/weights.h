@@ -5,10 +5,12 @@
 #include "mesh.h"
 
 /* Fills weights[mesh->n_edges] as the request asks: cotangent (cot a + cot b) / 2 with anything below `clamp`
- * raised to it once per edge (*n_clamped counts these; may be NULL), mean-value symmetrised, uniform, or the rows
- * given (which must name every edge once). Zero-area triangles: their cotangents are infinite or undefined; such an
- * edge gets the clamp from that triangle (counted) so that the weights stay finite; if a weight is not finite and
- * positive all the same: ORB_ZERO_AREA_TRIANGLE, naming the triangles. */
+ * raised to it once per edge (*n_clamped counts these; may be NULL), mean-value symmetrised (unit 1 / length), uniform,
+ * or the rows given (which must name every edge once, in either direction).
+ * Zero-area triangles (an area that rounding alone could have made): their cotangents are infinite or undefined;
+ * such an edge gets the clamp from that triangle (counted) so that the weights stay finite. Mean-value weights have
+ * no such stand-in. Where a weight is not finite and positive all the same: ORB_ZERO_AREA_TRIANGLE, naming the
+ * triangles. Other errors: ORB_BAD_ARGUMENT (kind, clamp, null rows), ORB_BAD_WEIGHT, ORB_OUT_OF_MEMORY. */
 orb_status weights_compute(const orb_mesh *mesh, const orb_request *request, double *weights, int64_t *n_clamped,
                            orb_error *error);
 

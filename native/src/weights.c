@@ -1,0 +1,303 @@
+/* One positive weight per edge of a mesh. SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * Cotangents: Pinkall and Polthier 1993. Mean values: Floater 2003, "Mean value coordinates", eq. 2.1. Both are made
+ * of each triangle's three angles, which are looked at once. */
+#include "weights.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* A triangle's edge vectors, divided by a power of two that brings the longest component into [1, 2): exact, and no
+ * square can overflow or vanish against the others, at any size of the mesh. */
+typedef struct triangle_shape {
+    double edge[3][3];  /* corner c to corner c + 1 */
+    double length[3];   /* of these */
+    double double_area; /* 0 where it cannot be told from 0 */
+    double scale;       /* the power of two: a true length times this is the length here */
+} triangle_shape;
+
+static double dot3(const double *a, const double *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static triangle_shape triangle_measure(const orb_mesh *mesh, int32_t triangle)
+{
+    triangle_shape shape = {0};
+    double largest = 0;
+    for (int c = 0; c < 3; c++) {
+        const double *p = mesh->vertices + 3 * (size_t)mesh->triangles[3 * (size_t)triangle + (size_t)c];
+        const double *q = mesh->vertices + 3 * (size_t)mesh->triangles[3 * (size_t)triangle + (size_t)((c + 1) % 3)];
+        for (int k = 0; k < 3; k++) {
+            shape.edge[c][k] = 0.5 * q[k] - 0.5 * p[k]; /* halves, so that the difference cannot overflow */
+            largest = fmax(largest, fabs(shape.edge[c][k]));
+        }
+    }
+    if (largest == 0) return shape;
+    const int exponent = ilogb(largest);
+    const double factor = ldexp(1, exponent > -1000 ? -exponent : 1000); /* 2^1074 would not be a double */
+    shape.scale = 0.5 * factor;
+    int longest = 0;
+    for (int c = 0; c < 3; c++) {
+        for (int k = 0; k < 3; k++) shape.edge[c][k] *= factor;
+        shape.length[c] = sqrt(dot3(shape.edge[c], shape.edge[c]));
+        if (shape.length[c] > shape.length[longest]) longest = c;
+    }
+    /* Of the three cross products that of the two shorter edges has the least rounding error. */
+    const double *u = shape.edge[(longest + 1) % 3], *v = shape.edge[(longest + 2) % 3];
+    const double cross[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+    const double area = sqrt(dot3(cross, cross));
+    const double noise = 4 * DBL_EPSILON * shape.length[(longest + 1) % 3] * shape.length[(longest + 2) % 3];
+    shape.double_area = area > noise ? area : 0;
+    return shape;
+}
+
+/* cot[c]: cotangent of the angle that lies opposite half-edge c. False, with cot unset, if the area is zero. */
+static bool triangle_cotangents(const triangle_shape *shape, double cot[3])
+{
+    if (shape->double_area == 0) return false;
+    for (int c = 0; c < 3; c++)
+        cot[c] = -dot3(shape->edge[(c + 1) % 3], shape->edge[(c + 2) % 3]) / shape->double_area;
+    return true;
+}
+
+/* part[c]: what the triangle adds to the mean-value weights of half-edge c, both directions added up:
+ * (tan(half of the angle at one end) + tan(half of that at the other)) / length. Infinite or NaN where an angle is pi
+ * or a length is zero. */
+static void triangle_mean_values(const triangle_shape *shape, double part[3])
+{
+    double tangent[3]; /* of half the angle at corner c */
+    for (int c = 0; c < 3; c++) {
+        const double lengths = shape->length[c] * shape->length[(c + 2) % 3];
+        const double dot = -dot3(shape->edge[c], shape->edge[(c + 2) % 3]);
+        tangent[c] = dot > 0 ? shape->double_area / (lengths + dot) : (lengths - dot) / shape->double_area;
+    }
+    for (int c = 0; c < 3; c++)
+        part[c] = (tangent[c] + tangent[(c + 1) % 3]) / shape->length[c] * shape->scale;
+}
+
+/* An error that names the triangles of zero area, or of nearly none, on the edges whose weight is not positive and
+ * finite. */
+static orb_status blame_triangles(const orb_mesh *mesh, const double *weights, orb_error *error)
+{
+    orb_found flat = {0}, beside = {0};
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
+        bool bad = false;
+        for (int32_t h = 3 * t; h < 3 * t + 3; h++) {
+            const double weight = weights[mesh->edge[h]];
+            bad = bad || !(weight > 0) || !isfinite(weight);
+        }
+        if (!bad) continue;
+        found_add(&beside, t);
+        if (triangle_measure(mesh, t).double_area == 0) found_add(&flat, t);
+    }
+    const orb_found *found = flat.found > 0 ? &flat : &beside;
+    return error_set_elements(error, ORB_ZERO_AREA_TRIANGLE, ORB_TRIANGLE, found->elements, found->entries,
+                              found->found,
+                              "%lld %s no area, first %d, so that weights are not positive and finite: merge their "
+                              "vertices by distance, dissolve them (Mesh > Clean Up > Degenerate Dissolve), or use "
+                              "other weights",
+                              (long long)found->found, found->found == 1 ? "triangle has" : "triangles have",
+                              (int)found->elements[0]);
+}
+
+static orb_status cotangent_weights(const orb_mesh *mesh, double clamp, double *weights, int64_t *n_clamped,
+                                    orb_error *error)
+{
+    if (!(clamp > 0) || !isfinite(clamp))
+        return error_set(error, ORB_BAD_ARGUMENT, "the least weight is %g: it must be positive and finite, such as 0.01",
+                         clamp);
+    /* Edges of zero-area triangles: known so that none is counted twice. */
+    bool *raised = calloc((size_t)mesh->n_edges, sizeof *raised);
+    if (!raised) return error_memory(error);
+    for (int32_t e = 0; e < mesh->n_edges; e++) weights[e] = 0;
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
+        const triangle_shape shape = triangle_measure(mesh, t);
+        double cot[3];
+        const bool has_area = triangle_cotangents(&shape, cot);
+        for (int32_t c = 0; c < 3; c++) {
+            const int32_t e = mesh->edge[3 * t + c];
+            weights[e] += has_area ? 0.5 * cot[c] : clamp;
+            if (!has_area) raised[e] = true;
+        }
+    }
+    bool finite = true;
+    for (int32_t e = 0; e < mesh->n_edges; e++) {
+        if (!isfinite(weights[e])) {
+            finite = false;
+            continue;
+        }
+        const bool low = weights[e] < clamp;
+        if (low) weights[e] = clamp;
+        if (low || raised[e]) ++*n_clamped;
+    }
+    free(raised);
+    return finite ? ORB_OK : blame_triangles(mesh, weights, error);
+}
+
+static orb_status mean_value_weights(const orb_mesh *mesh, double *weights, orb_error *error)
+{
+    for (int32_t e = 0; e < mesh->n_edges; e++) weights[e] = 0;
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
+        const triangle_shape shape = triangle_measure(mesh, t);
+        double part[3];
+        triangle_mean_values(&shape, part);
+        for (int32_t c = 0; c < 3; c++) weights[mesh->edge[3 * t + c]] += 0.5 * part[c];
+    }
+    for (int32_t e = 0; e < mesh->n_edges; e++)
+        if (!(weights[e] > 0) || !isfinite(weights[e])) return blame_triangles(mesh, weights, error);
+    return ORB_OK;
+}
+
+/* --- weights given by the caller ------------------------------------------------------------------------------ */
+
+static const double NOT_GIVEN = -1, BLAMED = -2; /* in place of a weight, while rows are read */
+
+/* The rows' faults, each kind apart. */
+typedef struct row_faults {
+    int64_t no_vertices; /* rows whose first two numbers are not vertices */
+    int32_t first_row;   /* the first of them */
+    orb_found no_edge, bad, twice, missing;
+} row_faults;
+
+static int32_t edge_higher_vertex(const orb_mesh *mesh, int32_t e)
+{
+    const int32_t h = mesh->edge_halfedge[e], a = halfedge_from(mesh, h), b = halfedge_to(mesh, h);
+    return a < b ? b : a;
+}
+
+/* first[v] ... first[v + 1] - 1 are the edges whose lower vertex is v: edges are numbered in that order. */
+static void edges_by_lower_vertex(const orb_mesh *mesh, int32_t *first)
+{
+    int32_t e = 0;
+    for (int32_t v = 0; v <= mesh->n_vertices; v++) {
+        for (; e < mesh->n_edges; e++) {
+            const int32_t h = mesh->edge_halfedge[e], a = halfedge_from(mesh, h), b = halfedge_to(mesh, h);
+            if ((a < b ? a : b) >= v) break;
+        }
+        first[v] = e;
+    }
+}
+
+/* The edge between two vertices, by bisection; -1 if there is none. */
+static int32_t edge_between(const orb_mesh *mesh, const int32_t *first, int32_t a, int32_t b)
+{
+    const int32_t low = a < b ? a : b, high = a < b ? b : a;
+    int32_t begin = first[low], end = first[low + 1];
+    while (begin < end) {
+        const int32_t middle = begin + (end - begin) / 2, vertex = edge_higher_vertex(mesh, middle);
+        if (vertex == high) return middle;
+        if (vertex < high)
+            begin = middle + 1;
+        else
+            end = middle;
+    }
+    return -1;
+}
+
+static bool is_vertex(const orb_mesh *mesh, double number)
+{
+    return number >= 0 && number < mesh->n_vertices && number == floor(number);
+}
+
+static orb_status report_faults(const row_faults *faults, const orb_request *request, const orb_mesh *mesh,
+                                orb_error *error)
+{
+    if (faults->no_vertices > 0) {
+        const double *row = request->edge_weights + 3 * (size_t)faults->first_row;
+        return error_set(error, ORB_BAD_WEIGHT,
+                         "%lld %s of edge weights, first row %d (%g, %g, %g), not begin with two vertices of 0 to "
+                         "%d: give rows i, j, w_ij of this mesh",
+                         (long long)faults->no_vertices, faults->no_vertices == 1 ? "row does" : "rows do",
+                         (int)faults->first_row, row[0], row[1], row[2], (int)mesh->n_vertices - 1);
+    }
+    const struct {
+        const orb_found *found;
+        const char *one, *many, *advice;
+    } kinds[] = {
+        {&faults->no_edge, "weight is given for a pair of vertices that is not an edge",
+         "weights are given for pairs of vertices that are not edges", "leave these rows out"},
+        {&faults->bad, "edge has a weight that is not positive and finite",
+         "edges have weights that are not positive and finite", "give each a positive number"},
+        {&faults->twice, "edge has more than one weight", "edges have more than one weight",
+         "give each edge one row, in one of its directions"},
+        {&faults->missing, "edge has no weight", "edges have no weight", "give every edge of the mesh a row"},
+    };
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        const orb_found *found = kinds[k].found;
+        if (found->found > 0)
+            return error_set_elements(error, ORB_BAD_WEIGHT, ORB_EDGE, found->elements, found->entries, found->found,
+                                      "%lld %s, first %d-%d: %s", (long long)found->found,
+                                      found->found == 1 ? kinds[k].one : kinds[k].many, (int)found->elements[0],
+                                      (int)found->elements[1], kinds[k].advice);
+    }
+    return ORB_OK;
+}
+
+static void read_row(const orb_mesh *mesh, const int32_t *first, const double *row, int32_t row_number,
+                     double *weights, row_faults *faults)
+{
+    if (!is_vertex(mesh, row[0]) || !is_vertex(mesh, row[1])) {
+        if (faults->no_vertices++ == 0) faults->first_row = row_number;
+        return;
+    }
+    const int32_t i = (int32_t)row[0], j = (int32_t)row[1], e = edge_between(mesh, first, i, j);
+    if (e < 0) {
+        found_add_edge(&faults->no_edge, i, j);
+    } else if (weights[e] == NOT_GIVEN) {
+        const bool good = row[2] > 0 && isfinite(row[2]);
+        weights[e] = good ? row[2] : BLAMED;
+        if (!good) found_add_edge(&faults->bad, i, j);
+    } else if (weights[e] != BLAMED) {
+        weights[e] = BLAMED;
+        found_add_edge(&faults->twice, i, j);
+    }
+}
+
+static orb_status given_weights(const orb_mesh *mesh, const orb_request *request, double *weights, orb_error *error)
+{
+    if (request->n_edge_weights < 0 || (request->n_edge_weights > 0 && !request->edge_weights))
+        return error_set(error, ORB_BAD_ARGUMENT,
+                         "the array of edge weights is a null pointer or its count is negative: give rows i, j, w_ij");
+    int32_t *first = malloc(((size_t)mesh->n_vertices + 1) * sizeof *first);
+    if (!first) return error_memory(error);
+    row_faults faults = {0};
+    edges_by_lower_vertex(mesh, first);
+    for (int32_t e = 0; e < mesh->n_edges; e++) weights[e] = NOT_GIVEN;
+    for (int32_t r = 0; r < request->n_edge_weights; r++)
+        read_row(mesh, first, request->edge_weights + 3 * (size_t)r, r, weights, &faults);
+    free(first);
+    for (int32_t e = 0; e < mesh->n_edges; e++) {
+        const int32_t h = mesh->edge_halfedge[e];
+        if (weights[e] == NOT_GIVEN) found_add_edge(&faults.missing, halfedge_from(mesh, h), halfedge_to(mesh, h));
+    }
+    return report_faults(&faults, request, mesh, error);
+}
+
+orb_status weights_compute(const orb_mesh *mesh, const orb_request *request, double *weights, int64_t *n_clamped,
+                           orb_error *error)
+{
+    int64_t counted = 0;
+    orb_status status = ORB_OK;
+    switch (request->weights) {
+    case ORB_WEIGHTS_COTANGENT:
+        status = cotangent_weights(mesh, request->clamp, weights, &counted, error);
+        break;
+    case ORB_WEIGHTS_MEAN_VALUE:
+        status = mean_value_weights(mesh, weights, error);
+        break;
+    case ORB_WEIGHTS_UNIFORM:
+        for (int32_t e = 0; e < mesh->n_edges; e++) weights[e] = 1;
+        break;
+    case ORB_WEIGHTS_GIVEN:
+        status = given_weights(mesh, request, weights, error);
+        break;
+    default:
+        status = error_set(error, ORB_BAD_ARGUMENT,
+                           "the kind of weights is %d: choose cotangent, mean-value, uniform or given",
+                           (int)request->weights);
+    }
+    if (n_clamped) *n_clamped = counted;
+    return status;
+}
