@@ -2,6 +2,7 @@
 #include "mesh.h"
 
 #include <math.h>
+#include <stddef.h>
 
 static orb_status check_arguments(const orb_mesh_arrays *arrays, orb_error *error)
 {

@@ -106,8 +106,8 @@ static orb_status cotangent_weights(const orb_mesh *mesh, double clamp, double *
                                     orb_error *error)
 {
     if (!(clamp > 0) || !isfinite(clamp))
-        return error_set(error, ORB_BAD_ARGUMENT, "the least weight is %g: it must be positive and finite, such as 0.01",
-                         clamp);
+        return error_set(error, ORB_BAD_ARGUMENT,
+                         "the least cotangent weight is %g: make it positive and finite, such as 0.01", clamp);
     /* Edges of zero-area triangles: known so that none is counted twice. */
     bool *raised = calloc((size_t)mesh->n_edges, sizeof *raised);
     if (!raised) return error_memory(error);
