@@ -9,6 +9,7 @@ struct orb_geometry {
     int K;
     const char *name;
     bool any_start;
+    double longest_step;
     double (*tan)(double), (*atan)(double), (*sin)(double), (*cos)(double);
 };
 
@@ -16,15 +17,16 @@ static double same(double r) { return r; }
 static double one(double r) { return r - r + 1; /* NaN stays NaN */ }
 
 static const orb_geometry geometries[] = {
-    {-1, "hyperbolic", false, tanh, atanh, sinh, cosh},
-    {0, "euclidean", true, same, same, same, one},
-    {+1, "spherical", false, tan, atan, sin, cos},
+    {-1, "hyperbolic", false, INFINITY, tanh, atanh, sinh, cosh},
+    {0, "euclidean", true, INFINITY, same, same, same, one},
+    {+1, "spherical", false, 0.5, tan, atan, sin, cos},
 };
 
 const orb_geometry *geometry_of_curvature(int curvature) { return &geometries[1 + (curvature > 0) - (curvature < 0)]; }
 const char *geometry_name(const orb_geometry *geometry) { return geometry->name; }
 int geometry_curvature(const orb_geometry *geometry) { return geometry->K; }
 bool geometry_any_start(const orb_geometry *geometry) { return geometry->any_start; }
+double geometry_longest_step(const orb_geometry *geometry) { return geometry->longest_step; }
 double geometry_sin(const orb_geometry *geometry, double r) { return geometry->sin(r); }
 double geometry_cos(const orb_geometry *geometry, double r) { return geometry->cos(r); }
 double geometry_tan(const orb_geometry *geometry, double r) { return geometry->tan(r); }

@@ -35,6 +35,8 @@ int geometry_curvature(const orb_geometry *geometry);
 /* --- how the minimiser treats the geometry (one row of a table each, docs/decisions.md) --- */
 /* The energy is quadratic: any starting point will do, so none is computed. */
 bool geometry_any_start(const orb_geometry *geometry);
+/* The longest step of a vertex that the minimiser may try; infinite where the energy is convex. */
+double geometry_longest_step(const orb_geometry *geometry);
 
 /* --- functions of curvature: sin r, r, sinh r and so on --- */
 double geometry_sin(const orb_geometry *geometry, double r);

@@ -1,0 +1,262 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "newton.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "lbfgs.h"
+
+static const double gradient_goal = 1e-13;      /* relative gradient at which to stop */
+static const double gradient_accepted = 1e-9;   /* the least that counts as converged */
+static const double energy_noise = 1e-13;       /* relative: predicted decreases below this are noise */
+static const double sufficient_decrease = 1e-4; /* Armijo */
+static const double slow = 0.25;                /* a kept factor is renewed when the gradient falls by less */
+enum { MOST_STEPS = 300, MOST_HALVINGS = 40, MOST_STALLS = 2 };
+
+typedef struct minimiser {
+    const orb_problem *problem;
+    orb_system *system;
+    orb_minimum *minimum;
+    orb_cholesky *cholesky;
+    orb_lbfgs *memory;           /* NULL for real systems */
+    orb_point *position, *trial; /* [n_vertices] */
+    orb_point *placed;           /* [n_copies] */
+    double complex *turn;        /* [n_copies] */
+    double complex *gradient, *old_gradient, *step, *transport; /* [n_vertices] */
+    double *scale;               /* [n_vertices] */
+    double *rows;                /* right-hand side and solution */
+    double energy, relative;
+} minimiser;
+
+static void minimiser_free(minimiser *work) {
+    free(work->trial);
+    free(work->placed);
+    free(work->turn);
+    free(work->gradient);
+    free(work->old_gradient);
+    free(work->step);
+    free(work->transport);
+    free(work->scale);
+    free(work->rows);
+    lbfgs_free(work->memory);
+    cholesky_free(work->cholesky);
+}
+
+static orb_status minimiser_allocate(minimiser *work, orb_error *error) {
+    size_t n = (size_t)work->problem->n_vertices + 1, copies = (size_t)work->problem->copies->n_copies + 1;
+    work->trial = malloc(n * sizeof *work->trial);
+    work->placed = malloc(copies * sizeof *work->placed);
+    work->turn = malloc(copies * sizeof *work->turn);
+    work->gradient = malloc(n * sizeof *work->gradient);
+    work->old_gradient = malloc(n * sizeof *work->old_gradient);
+    work->step = malloc(n * sizeof *work->step);
+    work->transport = malloc(n * sizeof *work->transport);
+    work->scale = malloc(n * sizeof *work->scale);
+    work->rows = malloc(2 * n * sizeof *work->rows);
+    if (!work->trial || !work->placed || !work->turn || !work->gradient || !work->old_gradient || !work->step ||
+        !work->transport || !work->scale || !work->rows)
+        return error_memory(error);
+    return work->system->is_complex ? lbfgs_create(work->problem->n_vertices, &work->memory, error) : ORB_OK;
+}
+
+static orb_status analyze(minimiser *work, const int32_t *order, orb_error *error) {
+    double start = monitor_clock();
+    int32_t *rows = malloc(((size_t)work->system->unknown[work->system->n_free] + 1) * sizeof *rows);
+    if (!rows)
+        return error_memory(error);
+    system_spread_order(work->system, order, rows);
+    orb_status status =
+        cholesky_analyze(&work->system->pattern, rows, work->system->is_complex, &work->cholesky, error);
+    free(rows);
+    work->minimum->seconds_analyze += monitor_clock() - start;
+    return status;
+}
+
+/* Energy, gradient and relative gradient at the current position. */
+static void evaluate(minimiser *work) {
+    double start = monitor_clock();
+    problem_place(work->problem, work->position, work->placed, work->turn);
+    work->energy = problem_energy(work->problem, work->placed, work->turn, work->position, work->gradient,
+                                  work->scale, &work->relative);
+    work->minimum->seconds_assemble += monitor_clock() - start;
+}
+
+/* Factors the Hessian at the current position; where it is indefinite, its positive part. */
+static orb_status factor(minimiser *work, orb_error *error) {
+    bool positive = false;
+    for (int hessian = HESSIAN_EXACT; hessian <= HESSIAN_POSITIVE && !positive; hessian++) {
+        double start = monitor_clock();
+        system_assemble(work->system, work->problem, work->position, work->placed, work->turn,
+                        (orb_hessian)hessian);
+        double assembled = monitor_clock();
+        orb_status status = cholesky_factor(work->cholesky, work->system->values, &positive, error);
+        if (status != ORB_OK)
+            return status;
+        work->minimum->factorisations++;
+        work->minimum->seconds_assemble += assembled - start;
+        work->minimum->seconds_factor += monitor_clock() - assembled;
+    }
+    work->minimum->factor_nonzeros = cholesky_nonzeros(work->cholesky);
+    if (!positive)
+        return error_set(error, ORB_NOT_CONVERGED,
+                         "the Hessian is not positive definite: weights or coordinates are of too different size");
+    return ORB_OK;
+}
+
+/* work->step = -(inverse Hessian) gradient; *slope = <gradient, step>. */
+static orb_status find_step(minimiser *work, double *slope, orb_error *error) {
+    double start = monitor_clock();
+    int32_t n = work->problem->n_vertices;
+    for (int32_t v = 0; v < n; v++)
+        work->step[v] = -work->gradient[v];
+    if (work->memory)
+        lbfgs_before(work->memory, work->step);
+    system_gather(work->system, work->problem, work->position, work->step, work->rows);
+    orb_status status = cholesky_solve(work->cholesky, work->rows, 1, work->rows, error);
+    if (status != ORB_OK)
+        return status;
+    system_scatter(work->system, work->problem, work->position, work->rows, work->step);
+    if (work->memory)
+        lbfgs_after(work->memory, work->step);
+    *slope = lbfgs_dot(n, work->gradient, work->step);
+    work->minimum->seconds_solve += monitor_clock() - start;
+    return ORB_OK;
+}
+
+/* Moves to exp(factor * step); the old position stays in `trial`. */
+static void move(minimiser *work, double factor) {
+    orb_point *from = work->trial;
+    work->trial = work->position;
+    for (int32_t v = 0; v < work->problem->n_vertices; v++)
+        from[v] = work->step[v] == 0 ? work->trial[v]
+                                     : geometry_exp(work->problem->geometry, work->trial[v], factor * work->step[v]);
+    work->position = from;
+}
+
+static void move_back(minimiser *work) {
+    orb_point *swap = work->trial;
+    work->trial = work->position;
+    work->position = swap;
+}
+
+/* Halves the step until the energy falls enough; in the noise, the full step. Leaves the scale used in *taken, which
+ * is 0 when no step helps. */
+static void line_search(minimiser *work, double slope, double *taken) {
+    double start = monitor_clock(), longest = 0, before = work->energy;
+    for (int32_t v = 0; v < work->problem->n_vertices; v++)
+        longest = fmax(longest, cabs(work->step[v]));
+    double cap = geometry_longest_step(work->problem->geometry), scale = longest > cap ? cap / longest : 1;
+    bool noise = -slope < energy_noise * before;
+    *taken = 0;
+    for (int halvings = 0; halvings < MOST_HALVINGS; halvings++, scale /= 2) {
+        move(work, scale);
+        problem_place(work->problem, work->position, work->placed, work->turn);
+        double energy = problem_energy(work->problem, work->placed, NULL, work->position, NULL, NULL, NULL);
+        if (noise || energy <= before + sufficient_decrease * scale * slope) {
+            *taken = scale;
+            break;
+        }
+        move_back(work);
+    }
+    work->minimum->seconds_solve += monitor_clock() - start;
+}
+
+/* After a step: gradient at the new point, and the pair for the memory, all in the new point's frames. */
+static void learn(minimiser *work, double taken) {
+    int32_t n = work->problem->n_vertices;
+    double complex *swap = work->old_gradient;
+    work->old_gradient = work->gradient;
+    work->gradient = swap;
+    evaluate(work);
+    if (!work->memory)
+        return;
+    for (int32_t v = 0; v < n; v++) {
+        work->transport[v] = geometry_transport(work->problem->geometry, work->trial[v], work->position[v]);
+        work->step[v] *= taken * work->transport[v];
+        work->old_gradient[v] *= work->transport[v];
+    }
+    lbfgs_transport(work->memory, work->transport);
+    lbfgs_remember(work->memory, work->step, work->old_gradient, work->gradient);
+}
+
+/* One step; *fresh says whether the factor was made at this very point. Sets *stuck when no step lowers the energy. */
+static orb_status advance(minimiser *work, bool fresh, bool *stuck, orb_error *error) {
+    double slope, taken;
+    orb_status status = find_step(work, &slope, error);
+    if (status != ORB_OK)
+        return status;
+    *stuck = true;
+    if (!(slope < 0)) /* NaN included */
+        return ORB_OK;
+    line_search(work, slope, &taken);
+    if (taken == 0) {
+        problem_place(work->problem, work->position, work->placed, work->turn);
+        return ORB_OK;
+    }
+    (void)fresh;
+    learn(work, taken);
+    work->minimum->iterations++;
+    *stuck = false;
+    return ORB_OK;
+}
+
+static orb_status iterate(minimiser *work, orb_monitor *monitor, orb_error *error) {
+    bool renew = true;
+    double first = work->relative, best = work->relative;
+    int stalls = 0;
+    while (work->relative > gradient_goal && work->minimum->iterations < MOST_STEPS && stalls <= MOST_STALLS) {
+        double done = log(first / work->relative) / log(first / gradient_goal);
+        orb_status status = monitor_report(monitor, "minimise", 0.3 + 0.6 * fmax(0, fmin(1, done)), error);
+        if (status == ORB_OK && renew)
+            status = factor(work, error);
+        bool stuck = false, fresh = renew;
+        double before = work->relative;
+        if (status == ORB_OK)
+            status = advance(work, fresh, &stuck, error);
+        if (status != ORB_OK)
+            return status;
+        if (stuck && fresh)
+            break;
+        if (stuck && work->memory)
+            lbfgs_forget(work->memory);
+        renew = stuck || !work->memory || (work->relative > slow * before && work->relative > gradient_accepted);
+        stalls = work->relative < 0.5 * best ? 0 : stalls + (work->relative < gradient_accepted);
+        best = fmin(best, work->relative);
+    }
+    return ORB_OK;
+}
+
+orb_status newton_minimise(const orb_problem *problem, orb_system *system, const int32_t *order, orb_point *position,
+                           orb_minimum *minimum, orb_monitor *monitor, orb_error *error) {
+    *minimum = (orb_minimum){0};
+    minimiser work = {.problem = problem, .system = system, .minimum = minimum};
+    orb_status status = minimiser_allocate(&work, error);
+    size_t bytes = (size_t)problem->n_vertices * sizeof *position;
+    work.position = malloc(bytes + sizeof *position);
+    if (!work.position)
+        status = error_memory(error);
+    if (status != ORB_OK)
+        goto done;
+    memcpy(work.position, position, bytes);
+    status = analyze(&work, order, error);
+    if (status != ORB_OK)
+        goto done;
+    evaluate(&work);
+    if (system->n_free > 0)
+        status = iterate(&work, monitor, error);
+    if (status != ORB_OK)
+        goto done;
+    minimum->energy = work.energy;
+    minimum->relative_gradient = work.relative;
+    if (!(work.relative <= gradient_accepted))
+        status = error_set(error, ORB_NOT_CONVERGED,
+                           "not converged: the relative gradient is %.1e after %d steps; try other cones or weights",
+                           work.relative, (int)minimum->iterations);
+    else
+        memcpy(position, work.position, bytes);
+done:
+    free(work.position);
+    minimiser_free(&work);
+    return status;
+}

@@ -1,0 +1,26 @@
+/* Minimises the energy of a problem. SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * One loop for the three geometries. A step solves with a Cholesky factor of the Hessian and is taken along geodesics,
+ * shortened until the energy falls. Where every vertex is free, the factor is that of the Hessian's complex-linear
+ * part (system.h), kept over many steps, and limited-memory BFGS supplies the rest; in the plane that part is the whole
+ * Hessian and the first step is exact. Where a vertex slides, the exact real Hessian is factored at each step. */
+#ifndef ORB_NEWTON_H
+#define ORB_NEWTON_H
+
+#include "monitor.h"
+#include "system.h"
+
+typedef struct orb_minimum {
+    int32_t iterations, factorisations;
+    double energy, relative_gradient;
+    int64_t factor_nonzeros;
+    double seconds_assemble, seconds_analyze, seconds_factor, seconds_solve;
+} orb_minimum;
+
+/* `position` [n_vertices] holds the start and receives the minimiser; fixed vertices stay. `order` [system->n_free]
+ * is an ordering of the system's blocks; a real system means the exact Hessian at every step.
+ * Errors: ORB_NOT_CONVERGED, ORB_CANCELLED, and the linear solver's. */
+orb_status newton_minimise(const orb_problem *problem, orb_system *system, const int32_t *order, orb_point *position,
+                           orb_minimum *minimum, orb_monitor *monitor, orb_error *error);
+
+#endif
