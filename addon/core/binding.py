@@ -1,0 +1,322 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""native/include/orbifold.h, declared for Python. Nothing else in the add-on uses ctypes.
+
+`library()` loads liborbifold.so from this folder at the first call. Names and the sequence of fields are the
+header's; tests/core/test_binding.py compares them with what a C compiler makes of it."""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import weakref
+from ctypes import POINTER, Structure, c_bool, c_char, c_char_p, c_double, c_int, c_int32, c_int64, c_void_p
+from pathlib import Path
+
+import numpy as np
+
+from .errors import OrbifoldError
+
+VERSION = "0.1.0"
+LIBRARY = Path(__file__).with_name("liborbifold.so")
+
+OK = 0
+MAX_ELEMENTS = 16
+STAGE_LENGTH = 32
+ELEMENTS = (None, "vertex", "edge", "triangle", "character")
+WEIGHTS = {"cotan": 0, "mean-value": 1, "uniform": 2}
+WEIGHTS_GIVEN = 3
+CHARTS = {
+    "default": 0,
+    "periodic": 1,
+    "conformal": 2,
+    "stereographic": 3,
+    "equirectangular": 4,
+    "octahedral": 5,
+    "poincare": 6,
+    "klein": 7,
+}
+
+DOUBLES = POINTER(c_double)
+INT32S = POINTER(c_int32)
+Progress = ctypes.CFUNCTYPE(c_bool, c_char_p, c_double, c_void_p)
+
+
+class Error(Structure):
+    _fields_ = [
+        ("status", c_int),
+        ("element", c_int),
+        ("n_elements", c_int32),
+        ("elements", c_int32 * MAX_ELEMENTS),
+        ("n_found", c_int64),
+        ("message", c_char * 320),
+    ]
+
+
+class MeshArrays(Structure):
+    _fields_ = [
+        ("n_vertices", c_int32),
+        ("vertices", DOUBLES),
+        ("n_triangles", c_int32),
+        ("triangles", INT32S),
+    ]
+
+
+class Request(Structure):
+    _fields_ = [
+        ("signature", c_char_p),
+        ("n_cones", c_int32),
+        ("cones", INT32S),
+        ("orders", INT32S),
+        ("weights", c_int),
+        ("clamp", c_double),
+        ("n_edge_weights", c_int32),
+        ("edge_weights", DOUBLES),
+        ("progress", Progress),
+        ("user", c_void_p),
+    ]
+
+
+class SignatureInfo(Structure):
+    _fields_ = [
+        ("curvature", c_int32),
+        ("geometry", c_char_p),
+        ("euler", c_double),
+        ("n_cones", c_int32),
+        ("supported", c_bool),
+    ]
+
+
+class View(Structure):
+    _fields_ = [
+        ("n_vertices", c_int32),
+        ("n_triangles", c_int32),
+        ("n_copies", c_int32),
+        ("n_cones", c_int32),
+        ("n_edges", c_int32),
+        ("n_seams", c_int32),
+        ("cut_triangles", INT32S),
+        ("cut_to_vertex", INT32S),
+        ("embedding", DOUBLES),
+        ("embedding_low", DOUBLES),
+        ("cones", INT32S),
+        ("orders", INT32S),
+        ("weights", DOUBLES),
+        ("seams", INT32S),
+        ("signature", c_char_p),
+        ("geometry", c_char_p),
+    ]
+
+
+class Report(Structure):
+    _fields_ = [
+        *((name, c_int32) for name in ("vertices", "triangles", "components", "euler", "boundary_loops", "genus")),
+        ("orbifold_euler", c_double),
+        ("iterations", c_int32),
+        ("energy", c_double),
+        ("relative_gradient", c_double),
+        *((name, c_int64) for name in ("clamped_weights", "factor_nonzeros", "flipped", "flipped_float32")),
+        *((name, c_double) for name in ("seam_residual", "angle_residual", "area_residual")),
+        *(
+            (name, c_double)
+            for name in (
+                "quasi_conformal_mean",
+                "quasi_conformal_median",
+                "quasi_conformal_max",
+                "log_area_std",
+                "symmetric_dirichlet",
+                "seconds_topology",
+                "seconds_cut",
+                "seconds_tile",
+                "seconds_initial",
+                "seconds_assemble",
+                "seconds_analyze",
+                "seconds_factor",
+                "seconds_solve",
+                "seconds_certify",
+                "seconds_total",
+            )
+        ),
+    ]
+
+
+EMBEDDING = c_void_p  # orb_embedding *
+JOB = c_void_p  # orb_job *
+
+# name: (result, arguments)
+PROTOTYPES = {
+    "orb_status_name": (c_char_p, [c_int]),
+    "orb_request_default": (Request, []),
+    "orb_signature_read": (c_int, [c_char_p, POINTER(SignatureInfo), INT32S, c_int32, POINTER(Error)]),
+    "orb_embed": (c_int, [POINTER(MeshArrays), POINTER(Request), POINTER(EMBEDDING), POINTER(Error)]),
+    "orb_embedding_free": (None, [EMBEDDING]),
+    "orb_embedding_view": (None, [EMBEDDING, POINTER(View)]),
+    "orb_embedding_report": (None, [EMBEDDING, POINTER(Report)]),
+    "orb_uv": (c_int, [EMBEDDING, c_int, DOUBLES, POINTER(c_int64), POINTER(Error)]),
+    "orb_whole_sphere": (c_int, [EMBEDDING, DOUBLES, POINTER(c_int64), POINTER(Error)]),
+    "orb_job_start": (c_int, [POINTER(MeshArrays), POINTER(Request), POINTER(JOB), POINTER(Error)]),
+    "orb_job_poll": (c_bool, [JOB, c_char_p, POINTER(c_double)]),
+    "orb_job_cancel": (None, [JOB]),
+    "orb_job_finish": (c_int, [JOB, POINTER(EMBEDDING), POINTER(Error)]),
+    "orb_version": (c_char_p, []),
+}
+
+
+@functools.cache
+def library() -> ctypes.CDLL:
+    """The native library with every prototype set. OrbifoldError "ORB_NO_LIBRARY" where it cannot be used."""
+    if not LIBRARY.is_file():
+        raise OrbifoldError(
+            "ORB_NO_LIBRARY", f"The native library {LIBRARY.name} is not in {LIBRARY.parent}; run `./build.sh native`."
+        )
+    try:
+        loaded = ctypes.CDLL(str(LIBRARY))
+        for name, (result, arguments) in PROTOTYPES.items():
+            function = getattr(loaded, name)
+            function.restype, function.argtypes = result, arguments
+    except (OSError, AttributeError) as reason:
+        raise OrbifoldError("ORB_NO_LIBRARY", f"The native library cannot be loaded here: {reason}.") from reason
+    version = loaded.orb_version().decode()
+    if version != VERSION:  # structures may differ then
+        raise OrbifoldError(
+            "ORB_NO_LIBRARY", f"The native library is version {version}, not {VERSION}; build it again."
+        )
+    return loaded
+
+
+def error_from(record: Error) -> OrbifoldError:
+    """The C library's error record as an exception."""
+    element = ELEMENTS[record.element]
+    entries = list(record.elements[: record.n_elements])
+    return OrbifoldError(
+        library().orb_status_name(record.status).decode(),
+        record.message.decode(errors="replace"),
+        list(zip(entries[::2], entries[1::2])) if element == "edge" else entries,
+        element,
+        record.n_found,
+    )
+
+
+def check(status: int, record: Error) -> None:
+    if status != OK:
+        raise error_from(record)
+
+
+def doubles(array: np.ndarray | None):
+    """Pointer to a contiguous float64 array, which the caller keeps alive; None is NULL."""
+    return None if array is None else array.ctypes.data_as(DOUBLES)
+
+
+def int32s(array: np.ndarray | None):
+    """Pointer to a contiguous int32 array, which the caller keeps alive; None is NULL."""
+    return None if array is None else array.ctypes.data_as(INT32S)
+
+
+def copied(pointer, *shape: int) -> np.ndarray:
+    """A NumPy array of its own, copied from the library's."""
+    if 0 in shape:
+        return np.zeros(shape, np.dtype(pointer._type_))
+    return np.ctypeslib.as_array(pointer, shape).copy()
+
+
+def read_signature(text: str) -> tuple[SignatureInfo, list[int]]:
+    """orb_signature_read: the information and the orders of all cones and corners."""
+    encoded = encode_signature(text)
+    info, record = SignatureInfo(), Error()
+    native = library()
+    check(native.orb_signature_read(encoded, info, None, 0, record), record)
+    orders = (c_int32 * info.n_cones)()
+    check(native.orb_signature_read(encoded, info, orders, info.n_cones, record), record)
+    return info, list(orders)
+
+
+def encode_signature(text: str) -> bytes:
+    """A signature for C: UTF-8 without a NUL, at which C would stop reading."""
+    if not isinstance(text, str):
+        raise OrbifoldError("ORB_BAD_ARGUMENT", f"A signature is a string such as '442', not {type(text).__name__}.")
+    if "\0" in text:
+        raise OrbifoldError(
+            "ORB_BAD_SIGNATURE", "The signature contains a NUL character.", [text.index("\0")], "character"
+        )
+    return text.encode(errors="replace")
+
+
+class Embedding:
+    """An orb_embedding, freed with this object. Arrays that it gives are copies."""
+
+    def __init__(self, pointer: c_void_p) -> None:
+        self._pointer = pointer
+        self._native = library()
+        weakref.finalize(self, self._native.orb_embedding_free, pointer)
+
+    def view(self) -> View:
+        """Pointers into the embedding: valid only while this object is."""
+        view = View()
+        self._native.orb_embedding_view(self._pointer, view)
+        return view
+
+    def report(self) -> Report:
+        report = Report()
+        self._native.orb_embedding_report(self._pointer, report)
+        return report
+
+    def uv(self, chart: int, n_triangles: int) -> tuple[np.ndarray, int]:
+        """(n_triangles, 3, 2) coordinates and the triangles that are not positive once these are float32."""
+        uv, flipped, record = np.empty((n_triangles, 3, 2)), c_int64(), Error()
+        check(self._native.orb_uv(self._pointer, chart, doubles(uv), flipped, record), record)
+        return uv, flipped.value
+
+    def whole_sphere(self, n_vertices: int) -> tuple[np.ndarray, int]:
+        """(n_vertices, 3) points and the triangles that were mended."""
+        positions, mended, record = np.empty((n_vertices, 3)), c_int64(), Error()
+        check(self._native.orb_whole_sphere(self._pointer, doubles(positions), mended, record), record)
+        return positions, mended.value
+
+
+class Job:
+    """An orb_job. One that is dropped without `finish` is cancelled, and its thread cleans up after itself."""
+
+    def __init__(
+        self,
+        vertices: np.ndarray,
+        triangles: np.ndarray,
+        signature: str,
+        cones: np.ndarray,
+        orders: np.ndarray | None,
+        weights: int,
+        clamp: float,
+        edge_weights: np.ndarray | None,
+    ) -> None:
+        self._pointer = c_void_p()
+        self._native = library()
+        mesh = MeshArrays(len(vertices), doubles(vertices), len(triangles), int32s(triangles))
+        request = self._native.orb_request_default()
+        request.signature = encode_signature(signature)
+        request.n_cones, request.cones, request.orders = len(cones), int32s(cones), int32s(orders)
+        request.weights, request.clamp = weights, clamp
+        if edge_weights is not None:
+            request.n_edge_weights, request.edge_weights = len(edge_weights), doubles(edge_weights)
+        record = Error()  # the library copies the arrays before the call returns
+        check(self._native.orb_job_start(mesh, request, self._pointer, record), record)
+        self._abandon = weakref.finalize(self, Job._cancel_and_finish, self._native, self._pointer)
+
+    @staticmethod
+    def _cancel_and_finish(native: ctypes.CDLL, pointer: c_void_p) -> None:
+        native.orb_job_cancel(pointer)
+        native.orb_job_finish(pointer, None, None)
+
+    def poll(self) -> tuple[str, float, bool]:
+        """(stage, fraction, whether it is done or cancelled)"""
+        stage, fraction = ctypes.create_string_buffer(STAGE_LENGTH), c_double()
+        over = self._native.orb_job_poll(self._pointer, stage, fraction)
+        return stage.value.decode(errors="replace"), fraction.value, over
+
+    def cancel(self) -> None:
+        self._native.orb_job_cancel(self._pointer)
+
+    def finish(self) -> Embedding:
+        """Waits, and gives the embedding or raises OrbifoldError; the job is gone then."""
+        self._abandon.detach()
+        pointer, self._pointer = self._pointer, c_void_p()  # a finished job takes no calls (NULL is harmless)
+        embedding, record = EMBEDDING(), Error()
+        check(self._native.orb_job_finish(pointer, embedding, record), record)
+        return Embedding(embedding)

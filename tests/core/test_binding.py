@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""binding.py says what orbifold.h says: a C compiler and the linker are asked."""
+
+import re
+import shutil
+import subprocess
+
+import pytest
+from conftest import CHECKOUT
+
+import core
+from core import binding
+
+HEADER = CHECKOUT / "native" / "include" / "orbifold.h"
+STRUCTURES = {
+    "orb_error": binding.Error,
+    "orb_mesh_arrays": binding.MeshArrays,
+    "orb_request": binding.Request,
+    "orb_signature_info": binding.SignatureInfo,
+    "orb_view": binding.View,
+    "orb_report": binding.Report,
+}
+CONSTANTS = {
+    "ORB_OK": binding.OK,
+    "ORB_MAX_ELEMENTS": binding.MAX_ELEMENTS,
+    "ORB_NOTHING": binding.ELEMENTS.index(None),
+    "ORB_VERTEX": binding.ELEMENTS.index("vertex"),
+    "ORB_EDGE": binding.ELEMENTS.index("edge"),
+    "ORB_TRIANGLE": binding.ELEMENTS.index("triangle"),
+    "ORB_CHARACTER": binding.ELEMENTS.index("character"),
+    "ORB_WEIGHTS_COTANGENT": binding.WEIGHTS["cotan"],
+    "ORB_WEIGHTS_MEAN_VALUE": binding.WEIGHTS["mean-value"],
+    "ORB_WEIGHTS_UNIFORM": binding.WEIGHTS["uniform"],
+    "ORB_WEIGHTS_GIVEN": binding.WEIGHTS_GIVEN,
+    **{f"ORB_CHART_{name.upper()}": number for name, number in binding.CHARTS.items()},
+}
+
+
+def ask_compiler(folder, expressions):
+    """The values of integer expressions, as C computes them."""
+    compiler = shutil.which("gcc") or shutil.which("clang") or shutil.which("cc")
+    if not compiler:
+        pytest.skip("no C compiler")
+    lines = "\n".join(f'printf("%ld\\n", (long)({expression}));' for expression in expressions)
+    source = folder / "ask.c"
+    source.write_text(
+        f'#include <stddef.h>\n#include <stdio.h>\n#include "{HEADER}"\nint main(void) {{\n{lines}\nreturn 0; }}\n'
+    )
+    subprocess.run([compiler, "-std=c11", "-o", folder / "ask", source], check=True)
+    return [int(line) for line in subprocess.check_output([folder / "ask"], text=True).split()]
+
+
+def test_structures_have_the_header_s_layout(tmp_path):
+    ours, expressions = [], []
+    for name, structure in STRUCTURES.items():
+        expressions.append(f"sizeof({name})")
+        ours.append((name, binding.ctypes.sizeof(structure)))
+        for field, *_ in structure._fields_:
+            member = getattr(structure, field)
+            expressions += [f"offsetof({name}, {field})", f"sizeof((({name} *)0)->{field})"]
+            ours += [(f"{name}.{field} at", member.offset), (f"{name}.{field} size", member.size)]
+    theirs = ask_compiler(tmp_path, expressions)
+    assert ours == [(what, value) for (what, _), value in zip(ours, theirs)]
+
+
+def test_structures_have_every_field_of_the_header():
+    text = re.sub(r"/\*.*?\*/", "", HEADER.read_text(), flags=re.DOTALL)
+    for name, structure in STRUCTURES.items():
+        body = re.search(rf"typedef struct {name} {{(.*?)}} {name};", text, re.DOTALL).group(1)
+        fields = [
+            re.search(r"(\w+)\s*(\[\w+\])?$", part.strip()).group(1)
+            for line in body.split(";")
+            if line.strip()
+            for part in line.split(",")
+        ]
+        assert [field for field, *_ in structure._fields_] == fields, name
+
+
+def test_constants_are_the_header_s(tmp_path):
+    theirs = ask_compiler(tmp_path, CONSTANTS)
+    assert dict(zip(CONSTANTS, theirs)) == CONSTANTS
+    charts = set(re.findall(r"\bORB_CHART_\w+", HEADER.read_text()))
+    assert charts == {name for name in CONSTANTS if name.startswith("ORB_CHART_")}
+
+
+def test_every_function_of_the_header_is_declared_with_its_arguments():
+    text = re.sub(r"/\*.*?\*/", "", HEADER.read_text(), flags=re.DOTALL)
+    declared = {
+        name: 0 if arguments.strip() == "void" else arguments.count(",") + 1
+        for name, arguments in re.findall(r"ORB_API [^;(]*?\b(orb_\w+)\(([^)]*)\);", text)
+    }
+    assert declared == {name: len(arguments) for name, (_, arguments) in binding.PROTOTYPES.items()}
+
+
+def test_library_exports_these_functions_and_nothing_else():
+    if not shutil.which("nm"):
+        pytest.skip("no nm")
+    core.library()
+    listing = subprocess.check_output(["nm", "-D", "--defined-only", binding.LIBRARY], text=True)
+    assert {line.split()[-1] for line in listing.splitlines()} == set(binding.PROTOTYPES)
+
+
+def test_every_status_has_its_name():
+    names = re.findall(r"^\s+(ORB_\w+)", re.search(r"enum orb_status {(.*?)}", HEADER.read_text(), re.DOTALL).group(1), re.M)
+    assert [core.library().orb_status_name(k).decode() for k in range(len(names))] == names
+
+
+def test_missing_library_is_said(monkeypatch, tmp_path):
+    binding.library.cache_clear()
+    monkeypatch.setattr(binding, "LIBRARY", tmp_path / "liborbifold.so")
+    try:
+        with pytest.raises(core.OrbifoldError, match="build.sh native") as caught:
+            core.geometry_of("(97)(97)")
+        assert caught.value.status == "ORB_NO_LIBRARY"
+        (tmp_path / "liborbifold.so").write_text("no library at all")
+        with pytest.raises(core.OrbifoldError, match="cannot be loaded") as caught:
+            core.library()
+        assert caught.value.status == "ORB_NO_LIBRARY"
+    finally:
+        binding.library.cache_clear()
