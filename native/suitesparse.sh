@@ -185,6 +185,8 @@ use_installed() {
 
 main() {
     local key
+    exec 9>"$out/lock"                      # two builds at once wait for each other
+    if command -v flock >/dev/null; then flock 9; fi
     key=$(stamp_key)
     if [ -e "$out/flags.mk" ] && [ "$(cat "$out/stamp" 2>/dev/null)" = "$key" ]; then
         touch "$out/flags.mk"
