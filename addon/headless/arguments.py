@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The command line of `./build.sh run`, read into a dataclass."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NoReturn, Optional, Sequence
+
+from .errors import RunError
+
+DEFAULT_SIGNATURE = "442"
+WEIGHTS = ("conformal", "cotan", "mean-value", "uniform")
+
+EPILOG = """\
+Cones are vertices of the mesh, counted from 0 in the sequence of the file, one for each number of the signature
+and in its sequence ("632": the first gets order 6). `--cones auto`, which is also what happens without --cones,
+takes extremities: the vertex farthest from the middle of the mesh, then again and again the vertex farthest along
+the mesh's edges from all cones so far. The same mesh always gets the same cones.
+
+Four files are written, NAME being the mesh file's name without its ending: NAME.blend, NAME.json (the report),
+NAME.npz (the layout in double precision) and NAME.png (a picture). The exit status is 0 only if the result was
+certified to be a bijection; otherwise it is 1, stderr has one line that says why, and nothing is written."""
+
+
+@dataclass(frozen=True)
+class Arguments:
+    mesh: Optional[Path]  # None: the sample creature
+    signature: str
+    cones: Optional[tuple[int, ...]]  # None: chosen automatically
+    orders: Optional[tuple[int, ...]]  # None: as the signature says
+    weights: str
+    output: Path
+    object_name: Optional[str]
+
+
+class _Parser(argparse.ArgumentParser):
+    """Errors are raised, not printed with the usage and exit status 2."""
+
+    def error(self, message: str) -> NoReturn:
+        raise RunError(f"{message}; see ./build.sh run --help")
+
+
+def read_arguments(words: Sequence[str]) -> Arguments:
+    """Raises RunError for anything that is not understood; `--help` prints the usage and exits with status 0."""
+    read = _parser().parse_args(list(words))
+    return Arguments(
+        mesh=read.mesh,
+        signature=read.orbifold,
+        cones=None if read.cones == "auto" else _whole_numbers("--cones", read.cones, "4,70,900 or auto"),
+        orders=None if read.orders is None else _whole_numbers("--orders", read.orders, "4,4,2"),
+        weights=read.weights,
+        output=read.output,
+        object_name=read.object,
+    )
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="./build.sh run",
+        usage="./build.sh run [MESH] [--orbifold SIGNATURE] [--cones i,j,k | --cones auto] [--orders n,n,n]\n"
+        "                       [--weights conformal|cotan|mean-value|uniform] [--output DIR] [--object NAME]\n"
+        "                       [--blender PATH]",
+        description="Map a mesh onto an orbifold: seamless texture coordinates, certified to be a bijection.",
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    add = parser.add_argument
+    add("mesh", metavar="MESH", nargs="?", type=Path,
+        help=".obj .ply .stl .glb .gltf .fbx .blend .off; without it a sample creature is grown")
+    add("--orbifold", metavar="SIGNATURE", default=DEFAULT_SIGNATURE,
+        help="Conway's notation: 442, 333, 632, 2222, 532, 432, 332, 22(5), 33, 237, 22222, ... (default %(default)s)")
+    add("--cones", metavar="i,j,k", default="auto", help="vertices, or auto (default)")
+    add("--orders", metavar="n,n,n", help="the order of each cone, where not in the signature's sequence")
+    add("--weights", metavar="KIND", choices=WEIGHTS, default="cotan",
+        help="conformal, cotan, mean-value or uniform (default %(default)s)")
+    add("--output", metavar="DIR", type=Path, default=Path("out"), help="folder for the results (default out)")
+    add("--object", metavar="NAME", help="which object, where the file holds several meshes")
+    add("--blender", metavar="PATH", help="the Blender to run in")  # read by build.sh; accepted here
+    return parser
+
+
+def _whole_numbers(option: str, text: str, example: str) -> tuple[int, ...]:
+    try:
+        numbers = tuple(int(word) for word in text.split(","))
+    except ValueError:
+        raise RunError(f"{option} {text}: expected whole numbers with commas between them, such as {example}") from None
+    return numbers

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One run: arguments, mesh, cones, embedding, four files. Either all four appear in the output folder or none."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import sys
+import tempfile
+import time
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Iterator, Sequence
+
+import bpy
+import numpy as np
+
+from .. import blender_mesh, core, faces, materials
+from ..sphere_map import placed_sphere
+from .arguments import Arguments, read_arguments
+from .errors import RunError
+from .extremities import farthest_vertices
+from .importers import load_object
+from .picture import Subject, render_picture
+from .sample import make_creature
+from .tiling import make_tiling
+
+EXPECTED = (RunError, core.OrbifoldError, core.MeshFileError, blender_mesh.BlenderMeshError)
+ENDINGS = ("blend", "json", "npz", "png")
+IMAGES = 120  # of the tile, at most: 532 has 60
+TRIANGLES_DRAWN = 2_500_000  # of all images of the tile in the picture, where each is a mesh of its own
+
+
+@dataclass(frozen=True)
+class Unwrapped:
+    name: str
+    obj: bpy.types.Object
+    arrays: blender_mesh.MeshArrays
+    result: core.Result
+    layout: faces.FaceLayout
+    material: bpy.types.Material
+
+
+def run(words: Sequence[str]) -> list[str]:
+    """What to tell the user. Raises one of EXPECTED, or finds a fault of ours."""
+    started = time.perf_counter()
+    arguments = read_arguments(words)
+    orders = core.parse_signature(arguments.signature).orders
+    with _quiet():
+        unwrapped = _unwrap(arguments, len(orders))
+        _write_files(unwrapped, arguments.output)
+    return _summary(unwrapped, arguments.output, time.perf_counter() - started)
+
+
+def one_line(reason: BaseException) -> str:
+    return " ".join(str(reason).split()) or type(reason).__name__
+
+
+# --------------------------------------------------------------------------------------------------- the work
+
+
+def _unwrap(arguments: Arguments, n_cones: int) -> Unwrapped:
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    if arguments.mesh is None:
+        name, obj = "creature", make_creature()
+    else:
+        name = arguments.mesh.stem
+        obj = load_object(arguments.mesh.resolve(), arguments.object_name, core.read_mesh)
+    arrays = blender_mesh.read_mesh(obj.data)
+    cones = arguments.cones
+    if cones is None:
+        cones = farthest_vertices(arrays.vertices, arrays.triangles, n_cones)
+    result = core.embed(arrays.vertices, arrays.triangles, arguments.signature, cones, arguments.orders,
+                        arguments.weights)
+    if not result.report["certificate"]["bijective"]:
+        raise RunError("the result is not certified to be a bijection")
+    layout = faces.layout_of(result, arrays, result.chart)
+    return Unwrapped(name, obj, arrays, result, layout, _dress(obj, arrays, result, layout))
+
+
+def _dress(obj: bpy.types.Object, arrays: blender_mesh.MeshArrays, result: core.Result,
+           layout: faces.FaceLayout) -> bpy.types.Material:
+    """UV map, seams, shape key and the one material on the object."""
+    mesh = obj.data
+    blender_mesh.write_uv(mesh, arrays, layout.uv)
+    blender_mesh.mark_seams(mesh, layout.seams)
+    if result.geometry == "spherical":
+        blender_mesh.write_shape_key(obj, placed_sphere(result.whole_sphere(), arrays))
+    material = materials.make_material(obj, result)
+    mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), bool))
+    mesh.update()
+    return material
+
+
+def _write_files(unwrapped: Unwrapped, output: Path) -> None:
+    """All four files into a folder beside their places, then moved there."""
+    with _folder_for(output) as part:
+        stem = part / unwrapped.name
+        _show_material()
+        bpy.ops.wm.save_as_mainfile(filepath=str(stem.with_name(f"{stem.name}.blend")), copy=True, compress=True)
+        report = json.dumps(unwrapped.result.report, indent=2, allow_nan=False)
+        stem.with_name(f"{stem.name}.json").write_text(report + "\n", encoding="utf-8")
+        unwrapped.result.save(stem.with_name(f"{stem.name}.npz"))
+        render_picture(_subject(unwrapped), stem.with_name(f"{stem.name}.png"))
+        for ending in ENDINGS:
+            os.replace(part / f"{unwrapped.name}.{ending}", output / f"{unwrapped.name}.{ending}")
+
+
+@contextmanager
+def _folder_for(output: Path) -> Iterator[Path]:
+    """A folder inside `output` for files in the making; when that fails, nothing that was not there before stays."""
+    made = [folder for folder in (output, *output.parents) if not folder.exists()]
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+        part = Path(tempfile.mkdtemp(prefix=".orbifold-", dir=output)).resolve()
+    except OSError as reason:
+        raise RunError(f"{output}: cannot be written to ({reason.strerror})") from reason
+    try:
+        yield part
+    except BaseException:
+        shutil.rmtree(part, ignore_errors=True)
+        for folder in made:
+            folder.rmdir()
+        raise
+    shutil.rmtree(part)
+
+
+def _subject(unwrapped: Unwrapped) -> Subject:
+    """What the picture shows: the tile as the library cut it, painted like the object."""
+    result = unwrapped.result
+    limit = IMAGES
+    if result.geometry == "hyperbolic":
+        limit = min(limit, max(1, TRIANGLES_DRAWN // len(result.cut_triangles)))
+    tiling = make_tiling(result.geometry, result.embedding, result.cut_triangles, result.cut_to_vertex, result.cones,
+                         result.orders, limit)
+    rank = {int(cone): number for number, cone in enumerate(result.cones)}
+    uv = result.uv
+
+    def paint(mesh: bpy.types.Mesh) -> None:
+        arrays = blender_mesh.read_mesh(mesh)
+        blender_mesh.write_uv(mesh, arrays, uv)
+
+    return Subject(unwrapped.obj, unwrapped.arrays.vertices, result.cones, tiling,
+                   [rank[int(result.cut_to_vertex[corner])] for corner in tiling.cones], unwrapped.material, paint)
+
+
+def _show_material() -> None:
+    """Whoever opens the .blend sees the material, not grey."""
+    for screen in bpy.data.screens:
+        for area in screen.areas:
+            if area.type == "VIEW_3D":
+                area.spaces.active.shading.type = "MATERIAL"
+
+
+def _summary(unwrapped: Unwrapped, output: Path, seconds: float) -> list[str]:
+    report = unwrapped.result.report
+    cones = ", ".join(str(cone["vertex"]) for cone in report["orbifold"]["cones"])
+    files = ", ".join(str(output / f"{unwrapped.name}.{ending}") for ending in ENDINGS)
+    return [
+        f"{unwrapped.name}: {report['mesh']['vertices']} vertices onto {report['orbifold']['signature']} "
+        f"({report['orbifold']['geometry']}), cones {cones}",
+        f"certified: a bijection, {report['certificate']['flipped']} flipped triangles, mean quasi-conformal error "
+        f"{report['distortion']['quasi_conformal_mean']:.3f}",
+        f"wrote {files} in {seconds:.1f} s",
+    ]
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Keeps Blender's own chatter (imports, saves, render lines), some of it written by C code, off both streams."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    kept = [os.dup(1), os.dup(2)]
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nowhere, 1)
+        os.dup2(nowhere, 2)
+        yield
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os.dup2(kept[0], 1)
+        os.dup2(kept[1], 2)
+        for descriptor in (*kept, nowhere):
+            os.close(descriptor)
