@@ -7,10 +7,12 @@ there): wrap it in `object_mode(obj)`. Features are tested for, never version nu
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Iterator, Optional
+from typing import Optional
 
+import bmesh
 import bpy
 import numpy as np
 
@@ -209,6 +211,20 @@ def mark_seams(mesh: bpy.types.Mesh, pairs: Optional[np.ndarray]) -> None:
     mesh.edges.foreach_set("use_seam", seams | cut)
     attribute = mesh.attributes.get(CUT_ATTRIBUTE) or mesh.attributes.new(CUT_ATTRIBUTE, "BOOLEAN", "EDGE")
     attribute.data.foreach_set("value", cut & ~seams)
+    mesh.update()
+
+
+def split_edges(mesh: bpy.types.Mesh, pairs: np.ndarray) -> None:
+    """Cut the mesh open along the edges between these pairs of vertices. Faces and their corners keep their sequence."""
+    found = edge_indices(mesh, pairs)
+    bm = bmesh.new()
+    try:
+        bm.from_mesh(mesh)
+        bm.edges.ensure_lookup_table()
+        bmesh.ops.split_edges(bm, edges=[bm.edges[edge] for edge in found[found >= 0].tolist()])
+        bm.to_mesh(mesh)
+    finally:
+        bm.free()
     mesh.update()
 
 

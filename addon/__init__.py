@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Orbifold UV for Blender: registration, nothing else. Where to read next: operators/unwrap.py."""
+
+bl_info = {
+    "name": "Orbifold UV",
+    "author": "The Orbifold UV authors",
+    "version": (0, 1, 0),
+    "blender": (3, 4, 0),
+    "location": "UV menu > Orbifold Unwrap; Sidebar > Orbifold",
+    "description": "Seamless UV maps without flips, by orbifold embeddings, with a proof for each",
+    "category": "UV",
+}
+
+import bpy
+
+from . import handlers, operators, panels, preferences, properties
+from .panels import menus
+
+CLASSES = (*preferences.CLASSES, *operators.CLASSES, *panels.CLASSES)
+
+
+def register() -> None:
+    properties.register()
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    menus.register()
+    handlers.register()
+
+
+def unregister() -> None:
+    handlers.unregister()
+    menus.unregister()
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)
+    properties.unregister()

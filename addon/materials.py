@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A material that shows the UV map `Orbifold`: an image with a pattern that the orbifold's group leaves as it is, so
+that it crosses the seams without a break (pattern.py)."""
+
+from __future__ import annotations
+
+from typing import Optional
+
+import bpy
+import numpy as np
+
+from . import blender_mesh, pattern
+from .core import Result
+
+IMAGE_SIZE = 1024
+
+
+def make_material(
+    obj: bpy.types.Object, result: Result, chart: Optional[str] = None, size: int = IMAGE_SIZE
+) -> bpy.types.Material:
+    """A new material for the layout that `result` has in `chart` (None: the one of `result.uv`), its image packed
+    into the file. An earlier one of this object is replaced."""
+    chart = chart or result.chart
+    name = f"Orbifold {obj.name}"
+    image = _image(name, pattern.image(result, chart, result.uv_chart(chart), size))
+    material = bpy.data.materials.get(name) or bpy.data.materials.new(name)
+    blender_mesh.enable_nodes(material)
+    tree = material.node_tree
+    tree.nodes.clear()
+    output = _node(tree, "ShaderNodeOutputMaterial", 600)
+    shader = _node(tree, "ShaderNodeBsdfPrincipled", 300)
+    texture = _node(tree, "ShaderNodeTexImage", 0)
+    coordinates = _node(tree, "ShaderNodeUVMap", -200)
+    coordinates.uv_map = blender_mesh.UV_MAP
+    texture.image = image
+    shader.inputs["Roughness"].default_value = 0.6
+    tree.links.new(coordinates.outputs["UV"], texture.inputs["Vector"])
+    tree.links.new(texture.outputs["Color"], shader.inputs["Base Color"])
+    tree.links.new(shader.outputs["BSDF"], output.inputs["Surface"])
+    return material
+
+
+def assign(obj: bpy.types.Object, material: bpy.types.Material) -> None:
+    """Show the material on the whole object; its other materials stay in their slots."""
+    materials = obj.data.materials
+    if materials.find(material.name) < 0:
+        materials.append(material)
+    slot = materials.find(material.name)
+    polygons = obj.data.polygons
+    polygons.foreach_set("material_index", np.full(len(polygons), slot, np.int32))
+    obj.active_material_index = slot
+    obj.data.update()
+
+
+def _node(tree: bpy.types.NodeTree, kind: str, x: float) -> bpy.types.Node:
+    node = tree.nodes.new(kind)
+    node.location = (x, 0)
+    return node
+
+
+def _image(name: str, pixels: np.ndarray) -> bpy.types.Image:
+    image = bpy.data.images.get(name)
+    if image is not None and tuple(image.size) != (pixels.shape[1], pixels.shape[0]):
+        bpy.data.images.remove(image)
+        image = None
+    if image is None:
+        image = bpy.data.images.new(name, pixels.shape[1], pixels.shape[0], alpha=False)
+    image.pixels.foreach_set(np.ascontiguousarray(pixels, np.float32).ravel())
+    image.update()
+    image.pack()
+    return image
