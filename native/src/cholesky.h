@@ -1,17 +1,11 @@
 /* Sparse Cholesky factorisation, real symmetric or complex Hermitian. SPDX-License-Identifier: GPL-3.0-or-later
  *
- * The only door to CHOLMOD. Analyse a pattern once, factor it with many values, solve many times:
- * the lower triangle, by columns, row indices ascending, the diagonal entry first in its column. */
+ * The only door to CHOLMOD. Analyse a pattern (the lower triangle) once, factor it with many values, solve many
+ * times. */
 #ifndef ORB_CHOLESKY_H
 #define ORB_CHOLESKY_H
 
-#include "error.h"
-
-typedef struct orb_pattern {
-    int64_t n;
-    int64_t *column; /* [n+1] */
-    int32_t *row;    /* [column[n]] row >= column */
-} orb_pattern;
+#include "pattern.h"
 
 typedef enum orb_ordering { ORDERING_AMD, ORDERING_METIS } orb_ordering;
 

@@ -219,9 +219,9 @@ static orb_status find_segment(cutter *c, int32_t from, int32_t to, orb_error *e
     if (!found) {
         const int32_t ends[2] = {from, to};
         return error_set_elements(error, ORB_CUT_BLOCKED, ORB_VERTEX, ends, 2, 2,
-                                  "No path along edges joins the cones at vertices %d and %d without meeting the cut "
-                                  "or another cone: pick other vertices, or give the cones in another sequence.",
-                                  from, to);
+                                  "no path along edges joins the cones at vertices %d and %d without meeting the cut "
+                                  "or another cone: pick other vertices or give the cones in another sequence",
+                                  (int)from, (int)to);
     }
     int32_t first = c->n_path - 1;
     path_append(c, from, to);
@@ -301,8 +301,6 @@ static void disk_fill(orb_disk *disk, const cutter *c)
 
 static orb_status disk_create(cutter *c, orb_disk **disk, orb_error *error)
 {
-    if ((int64_t)c->mesh->n_vertices + c->n_path > INT32_MAX)
-        return error_set(error, ORB_BAD_ARGUMENT, "The cut mesh would have more than 2^31 vertices: simplify the mesh.");
     orb_disk *made = calloc(1, sizeof *made);
     if (!made || !disk_allocate(made, c)) {
         cut_free(made);
@@ -318,61 +316,46 @@ static orb_status disk_create(cutter *c, orb_disk **disk, orb_error *error)
     return ORB_OK;
 }
 
-static int compare_int32(const void *a, const void *b)
+static orb_status bad_cones(const orb_found *found, orb_error *error, const char *what)
 {
-    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return (x > y) - (x < y);
+    return error_set_elements(error, ORB_BAD_CONE, ORB_VERTEX, found->elements, found->entries, found->found,
+                              "the cone at vertex %d %s", (int)found->elements[0], what);
 }
 
-/* `sorted` [n_cones] is the cones, ascending; `bad` [n_cones] is for the ones that an error names. */
-static orb_status check_cones(const orb_mesh *mesh, int32_t n_cones, const int32_t *sorted, int32_t *bad,
-                              orb_error *error)
+static orb_status check_cones(const orb_mesh *mesh, int32_t n_cones, const int32_t *cones, orb_error *error)
 {
-    int32_t n_range = 0, n_isolated = 0, n_repeated = 0;
-    for (int32_t s = 0; s < n_cones; s++)
-        if (sorted[s] < 0 || sorted[s] >= mesh->n_vertices)
-            bad[n_range++] = sorted[s];
-    if (n_range > 0)
-        return error_set_elements(error, ORB_BAD_CONE, ORB_VERTEX, bad, n_range, n_range,
-                                  "Cone vertex %d does not exist, the mesh has vertices 0 to %d: pick a vertex of "
-                                  "this mesh.", bad[0], mesh->n_vertices - 1);
-    for (int32_t s = 0; s < n_cones; s++)
-        if (mesh->vertex_halfedge[sorted[s]] < 0)
-            bad[n_isolated++] = sorted[s];
-    if (n_isolated > 0)
-        return error_set_elements(error, ORB_BAD_CONE, ORB_VERTEX, bad, n_isolated, n_isolated,
-                                  "Cone vertex %d belongs to no triangle: pick a vertex of the surface.", bad[0]);
-    for (int32_t s = 1; s < n_cones; s++)
-        if (sorted[s] == sorted[s - 1] && (n_repeated == 0 || bad[n_repeated - 1] != sorted[s]))
-            bad[n_repeated++] = sorted[s];
-    if (n_repeated > 0)
-        return error_set_elements(error, ORB_BAD_CONE, ORB_VERTEX, bad, n_repeated, n_repeated,
-                                  "Vertex %d is given as a cone more than once: each cone needs a vertex of its own.",
-                                  bad[0]);
-    return ORB_OK;
-}
-
-static orb_status check_input(const orb_mesh *mesh, int32_t n_cones, const int32_t *cones, orb_error *error)
-{
+    orb_found outside = {0}, isolated = {0}, repeated = {0};
     orb_status status = mesh_require_sphere(mesh, error);
     if (status != ORB_OK)
         return status;
     if (n_cones < 2)
-        return error_set(error, ORB_BAD_CONE, "A cut joins at least two cones, %d given: add a cone.", n_cones);
-    int32_t *sorted = malloc(2 * (size_t)n_cones * sizeof *sorted);
-    if (!sorted)
+        return error_set(error, ORB_BAD_CONE, "a cut joins two cones at least, here are %d: add a cone", (int)n_cones);
+    uint8_t *times = calloc((size_t)mesh->n_vertices, sizeof *times); /* 2 stands for more, too */
+    if (!times)
         return error_memory(error);
-    memcpy(sorted, cones, (size_t)n_cones * sizeof *sorted);
-    qsort(sorted, (size_t)n_cones, sizeof *sorted, compare_int32);
-    status = check_cones(mesh, n_cones, sorted, sorted + n_cones, error);
-    free(sorted);
-    return status;
+    for (int32_t s = 0; s < n_cones; s++) {
+        int32_t v = cones[s];
+        if (v < 0 || v >= mesh->n_vertices)
+            found_add(&outside, v);
+        else if (mesh->vertex_halfedge[v] < 0)
+            found_add(&isolated, v);
+        else if (times[v] < 2 && ++times[v] == 2)
+            found_add(&repeated, v);
+    }
+    free(times);
+    if (outside.found > 0)
+        return bad_cones(&outside, error, "does not exist: pick a vertex of this mesh");
+    if (isolated.found > 0)
+        return bad_cones(&isolated, error, "belongs to no triangle: pick a vertex of the surface");
+    if (repeated.found > 0)
+        return bad_cones(&repeated, error, "is given more than once: pick another vertex for each further cone");
+    return ORB_OK;
 }
 
 orb_status cut_create(const orb_mesh *mesh, int32_t n_cones, const int32_t *cones, orb_disk **disk, orb_error *error)
 {
     *disk = NULL;
-    orb_status status = check_input(mesh, n_cones, cones, error);
+    orb_status status = check_cones(mesh, n_cones, cones, error);
     if (status != ORB_OK)
         return status;
     cutter c = {.mesh = mesh, .n_cones = n_cones, .cones = cones};

@@ -23,4 +23,8 @@ struct orb_embedding {
     orb_report report;
 };
 
+/* Fills what the view and the report still lack once positions are final: coordinates, seams, rows of weights, the
+ * mesh's numbers, and the flips that are left when UVs are rounded to float. */
+orb_status embedding_finish(orb_embedding *embedding, orb_error *error);
+
 #endif

@@ -34,12 +34,13 @@ static int32_t split_triangle(const int32_t v[3], const int32_t m[3], int32_t *p
     return 3;
 }
 
-/* midpoint[edge]: the new vertex, or -1. Returns the number of vertices in all. */
-static int64_t number_midpoints(const orb_mesh *mesh, const uint8_t *marked, int32_t *midpoint)
+/* midpoint[edge]: the new vertex, or -1. Returns the number of vertices in all; it fits, for a mesh has at most
+ * INT32_MAX / 3 vertices and INT32_MAX / 2 edges. */
+static int32_t number_midpoints(const orb_mesh *mesh, const uint8_t *marked, int32_t *midpoint)
 {
-    int64_t n_vertices = mesh->n_vertices;
+    int32_t n_vertices = mesh->n_vertices;
     for (int32_t e = 0; e < mesh->n_edges; e++)
-        midpoint[e] = marked[e] && n_vertices < INT32_MAX ? (int32_t)n_vertices++ : -1;
+        midpoint[e] = marked[e] ? n_vertices++ : -1;
     return n_vertices;
 }
 
@@ -70,14 +71,15 @@ orb_status refine_edges(const orb_mesh *mesh, const uint8_t *marked, orb_mesh **
         status = error_memory(error);
         goto done;
     }
-    int64_t n_vertices = number_midpoints(mesh, marked, midpoint);
+    int32_t n_vertices = number_midpoints(mesh, marked, midpoint);
     int64_t n_triangles = mesh->n_triangles;
     for (int32_t h = 0; h < 3 * mesh->n_triangles; h++)
         n_triangles += midpoint[mesh->edge[h]] >= 0;
-    if (n_vertices == INT32_MAX || n_triangles > INT32_MAX / 3) {
+    if (n_vertices > INT32_MAX / 3 || n_triangles > INT32_MAX / 3) {
         status = error_set(error, ORB_BAD_ARGUMENT,
-                           "The mesh is too coarse for these cones, and refining it to make room for the cut "
-                           "gives more than 2^31 elements: choose fewer cones or subdivide the mesh evenly.");
+                           "the cut has no room between these cones, and the mesh is too large to be refined round "
+                           "it (%d vertices, %lld triangles): use fewer cones",
+                           (int)n_vertices, (long long)n_triangles);
         goto done;
     }
     vertices = malloc((size_t)n_vertices * 3 * sizeof *vertices + 1);
@@ -96,7 +98,7 @@ orb_status refine_edges(const orb_mesh *mesh, const uint8_t *marked, orb_mesh **
         for (int32_t i = 0; i < n; i++)
             from[n_pieces++] = t;
     }
-    orb_mesh_arrays arrays = {(int32_t)n_vertices, vertices, (int32_t)n_triangles, triangles};
+    orb_mesh_arrays arrays = {n_vertices, vertices, (int32_t)n_triangles, triangles};
     status = mesh_create(&arrays, refined, error);
     if (status == ORB_OK) {
         *parent = from;

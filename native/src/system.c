@@ -29,63 +29,19 @@ static orb_status number_vertices(const orb_problem *problem, orb_system *system
     return ORB_OK;
 }
 
-typedef struct pair {
-    int32_t row, edge;
-} pair;
-
-static int by_row(const void *a, const void *b) {
-    int32_t x = ((const pair *)a)->row, y = ((const pair *)b)->row;
-    return (x > y) - (x < y);
-}
-
-/* The moving ends of an edge, low first; false if an end is fixed or both ends are one vertex. */
-static bool moving_ends(const orb_problem *problem, const orb_system *system, int32_t e, int32_t *low, int32_t *high) {
-    int32_t i = system->free_index[problem->copies->vertex[problem->edges[2 * e]]];
-    int32_t j = system->free_index[problem->copies->vertex[problem->edges[2 * e + 1]]];
-    *low = i < j ? i : j;
-    *high = i < j ? j : i;
-    return i >= 0 && j >= 0 && i != j;
-}
-
-/* Lower triangle by columns: the diagonal, then one entry for each pair of vertices that share an edge. */
 static orb_status build_blocks(const orb_problem *problem, orb_system *system, orb_error *error) {
-    size_t n = (size_t)system->n_free, edges = (size_t)problem->n_edges;
-    int64_t *start = calloc(n + 2, sizeof *start);
-    pair *pairs = malloc((edges + 1) * sizeof *pairs);
-    system->blocks.n = system->n_free;
-    system->blocks.column = malloc((n + 1) * sizeof(int64_t));
-    system->blocks.row = malloc((n + edges + 1) * sizeof(int32_t));
-    system->slot = malloc((edges + 1) * sizeof(int64_t));
-    orb_status status = error_memory(error);
-    if (!start || !pairs || !system->blocks.column || !system->blocks.row || !system->slot)
-        goto done;
-    int32_t low, high;
-    for (int32_t e = 0; e < problem->n_edges; e++)
-        if (moving_ends(problem, system, e, &low, &high))
-            start[low + 2]++;
-    for (size_t j = 0; j < n; j++)
-        start[j + 2] += start[j + 1];
-    for (int32_t e = 0; e < problem->n_edges; e++) {
-        system->slot[e] = -1;
-        if (moving_ends(problem, system, e, &low, &high))
-            pairs[start[low + 1]++] = (pair){high, e};
+    size_t edges = (size_t)problem->n_edges;
+    int32_t *ends = malloc((2 * edges + 1) * sizeof *ends);
+    system->slot = malloc((edges + 1) * sizeof *system->slot);
+    if (!ends || !system->slot) {
+        free(ends);
+        return error_memory(error);
     }
-    int64_t entries = 0;
-    for (size_t j = 0; j < n; j++) {
-        system->blocks.column[j] = entries;
-        system->blocks.row[entries++] = (int32_t)j;
-        qsort(pairs + start[j], (size_t)(start[j + 1] - start[j]), sizeof *pairs, by_row);
-        for (int64_t k = start[j]; k < start[j + 1]; k++) {
-            if (system->blocks.row[entries - 1] != pairs[k].row)
-                system->blocks.row[entries++] = pairs[k].row;
-            system->slot[pairs[k].edge] = entries - 1;
-        }
-    }
-    system->blocks.column[n] = entries;
-    status = ORB_OK;
-done:
-    free(start);
-    free(pairs);
+    for (size_t k = 0; k < 2 * edges; k++)
+        ends[k] = system->free_index[problem->copies->vertex[problem->edges[k]]];
+    orb_status status =
+        pattern_of_pairs(system->n_free, problem->n_edges, ends, &system->blocks, system->slot, error);
+    free(ends);
     return status;
 }
 
@@ -152,14 +108,12 @@ void system_free(orb_system *system) {
     if (!system)
         return;
     if (!system->is_complex) {
-        free(system->pattern.column);
-        free(system->pattern.row);
+        pattern_clear(&system->pattern);
         free(system->values);
     }
     free(system->free_vertex);
     free(system->free_index);
-    free(system->blocks.column);
-    free(system->blocks.row);
+    pattern_clear(&system->blocks);
     free(system->slot);
     free(system->unknown);
     free(system->first);

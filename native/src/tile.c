@@ -88,7 +88,8 @@ orb_status tile_create(int curvature, int32_t n_cones, const int32_t *orders, or
     tile->orders = malloc(k * sizeof *tile->orders);
     tile->corners = malloc((2 * k - 2) * sizeof *tile->corners);
     tile->pairings = malloc(k * sizeof *tile->pairings);
-    if (!tile->orders || !tile->corners || !tile->pairings)
+    tile->sides = malloc(k * sizeof *tile->sides);
+    if (!tile->orders || !tile->corners || !tile->pairings || !tile->sides)
         goto done;
     for (size_t i = 0; i < k; i++)
         tile->orders[i] = orders[i];
@@ -99,6 +100,7 @@ orb_status tile_create(int curvature, int32_t n_cones, const int32_t *orders, or
     for (size_t s = 1; s < k; s++) {
         /* The poles of a lune are antipodal and give no direction: there, the tangent point of the side does. */
         orb_point p = tile->corners[s - 1], q = k > 2 ? tile->corners[s] : touch[s - 1];
+        tile->sides[s - 1] = (k > 2 ? 1 : 2) * geometry_log(tile->geometry, p, q);
         tile->pairings[s] = isometry_pairing(tile->geometry, p, q, point_conjugate(p), point_conjugate(q));
     }
     status = error_set(error, ORB_OK, "%s", "");
@@ -116,5 +118,11 @@ void tile_free(orb_tile *tile) {
     free(tile->orders);
     free(tile->corners);
     free(tile->pairings);
+    free(tile->sides);
     free(tile);
+}
+
+double tile_area(const orb_tile *tile, double euler) {
+    int K = geometry_curvature(tile->geometry);
+    return K == 0 ? 1 : 2 * pi * euler * K;
 }

@@ -15,11 +15,15 @@ typedef struct orb_tile {
     orb_point *corners;    /* [2*n_cones - 2] counter-clockwise, as above */
     int32_t n_pairings;    /* n_cones: the identity and one for each segment */
     orb_isometry *pairings;/* [n_pairings] */
+    double complex *sides; /* [n_cones-1] the vector along the side c_s c_(s+1) of the left bank, at c_s */
     bool rotates;          /* a free rotation about c_1 (two cones) */
     bool deforms;          /* the tile has an affine modulus, found after the solve (2222) */
 } orb_tile;
 
 orb_status tile_create(int curvature, int32_t n_cones, const int32_t *orders, orb_tile **tile, orb_error *error);
 void tile_free(orb_tile *tile);
+
+/* Area of the tile: 2 pi |chi| by Gauss and Bonnet, and 1 in the plane. */
+double tile_area(const orb_tile *tile, double euler);
 
 #endif

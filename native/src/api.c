@@ -1,0 +1,234 @@
+/* The whole way from mesh arrays to a certified embedding. SPDX-License-Identifier: GPL-3.0-or-later */
+#include <stdlib.h>
+#include <string.h>
+
+#include "certificate.h"
+#include "cut.h"
+#include "distortion.h"
+#include "embedding.h"
+#include "initial.h"
+#include "modulus.h"
+#include "monitor.h"
+#include "newton.h"
+#include "weights.h"
+
+/* What is needed on the way and not afterwards. */
+typedef struct workshop {
+    const orb_request *request;
+    orb_embedding *embedding;
+    orb_disk *disk;
+    orb_problem *problem;
+    orb_system *system;
+    int32_t *order; /* [system->n_free] of the system's blocks */
+    orb_monitor monitor;
+} workshop;
+
+const char *orb_version(void) { return "0.1.0"; }
+
+orb_request orb_request_default(void) { return (orb_request){.weights = ORB_WEIGHTS_COTANGENT, .clamp = 0.01}; }
+
+/* Signature, orders and mesh: everything that can be wrong before any work is done. */
+static orb_status read_input(workshop *work, const orb_mesh_arrays *arrays, int32_t *orders, orb_error *error) {
+    orb_embedding *embedding = work->embedding;
+    const orb_request *request = work->request;
+    orb_status status = signature_parse(request->signature, &embedding->signature, error);
+    if (status == ORB_OK)
+        status = signature_match(embedding->signature, request->n_cones, request->orders, orders, error);
+    if (status == ORB_OK)
+        status = mesh_create(arrays, &embedding->mesh, error);
+    if (status == ORB_OK)
+        status = mesh_require_sphere(embedding->mesh, error);
+    if (status != ORB_OK)
+        return status;
+    embedding->cones = malloc((size_t)request->n_cones * sizeof *embedding->cones);
+    embedding->weights = malloc(((size_t)embedding->mesh->n_edges + 1) * sizeof *embedding->weights);
+    if (!embedding->cones || !embedding->weights)
+        return error_memory(error);
+    memcpy(embedding->cones, request->cones, (size_t)request->n_cones * sizeof *embedding->cones);
+    return weights_compute(embedding->mesh, request, embedding->weights, &embedding->report.clamped_weights, error);
+}
+
+static orb_status cut_and_glue(workshop *work, const int32_t *orders, orb_error *error) {
+    orb_embedding *embedding = work->embedding;
+    orb_report *report = &embedding->report;
+    int32_t n_cones = work->request->n_cones;
+    double start = monitor_clock();
+    orb_status status = cut_create(embedding->mesh, n_cones, embedding->cones, &work->disk, error);
+    report->seconds_cut = monitor_clock() - start;
+    if (status != ORB_OK)
+        return status;
+    start = monitor_clock();
+    status = tile_create(embedding->signature->curvature, n_cones, orders, &embedding->tile, error);
+    if (status == ORB_OK)
+        status = holonomy_create(embedding->mesh, work->disk, embedding->tile, &embedding->copies, error);
+    if (status == ORB_OK)
+        status = problem_create(embedding->mesh, embedding->copies, embedding->tile, embedding->cones,
+                                embedding->weights, &work->problem, error);
+    report->seconds_tile = monitor_clock() - start;
+    return status;
+}
+
+/* The matrix's pattern and its ordering, which the initial guess shares. */
+static orb_status set_up_system(workshop *work, orb_error *error) {
+    const orb_tile *tile = work->embedding->tile;
+    double start = monitor_clock();
+    if (tile->rotates) {
+        int32_t middle = work->disk->copy_vertex[work->disk->boundary[work->disk->corner_at[1] / 2]];
+        problem_hold_rotation(work->problem, middle < work->embedding->mesh->n_vertices ? middle : 0,
+                              tile->corners[0]);
+    }
+    orb_status status = system_create(work->problem, !tile->rotates, &work->system, error);
+    if (status != ORB_OK)
+        return status;
+    double built = monitor_clock();
+    work->order = malloc(((size_t)work->system->n_free + 1) * sizeof *work->order);
+    if (!work->order)
+        return error_memory(error);
+    status = cholesky_order(&work->system->blocks, ORDERING_AMD, work->order, error);
+    work->embedding->report.seconds_assemble = built - start;
+    work->embedding->report.seconds_analyze = monitor_clock() - built;
+    return status;
+}
+
+/* Weights for the disk's own mesh: the same, unless it was refined. */
+static orb_status start_on_disk(workshop *work, const int32_t *vertex_order, orb_point *start, orb_error *error) {
+    const orb_disk *disk = work->disk;
+    if (!disk->refined)
+        return initial_embed(disk, work->embedding->tile, work->embedding->weights, vertex_order,
+                             work->system->n_free, start, error);
+    double *weights = malloc(((size_t)disk->mesh->n_edges + 1) * sizeof *weights);
+    if (!weights)
+        return error_memory(error);
+    for (int32_t e = 0; e < disk->mesh->n_edges; e++)
+        weights[e] = 1;
+    orb_status status = initial_embed(disk, work->embedding->tile, weights, NULL, 0, start, error);
+    free(weights);
+    return status;
+}
+
+static orb_status find_start(workshop *work, orb_error *error) {
+    orb_embedding *embedding = work->embedding;
+    const orb_system *system = work->system;
+    double began = monitor_clock();
+    orb_status status = error_memory(error);
+    size_t n = (size_t)embedding->mesh->n_vertices;
+    orb_point *start = malloc(((size_t)work->disk->mesh->n_vertices + 1) * sizeof *start);
+    int32_t *vertex_order = malloc(((size_t)system->n_free + 1) * sizeof *vertex_order);
+    embedding->position = malloc((n + 1) * sizeof *embedding->position);
+    if (!start || !vertex_order || !embedding->position)
+        goto done;
+    for (int32_t k = 0; k < system->n_free; k++)
+        vertex_order[k] = system->free_vertex[work->order[k]];
+    if (geometry_any_start(embedding->tile->geometry)) {
+        initial_cones_only(work->disk, embedding->tile, start);
+        status = ORB_OK;
+    } else {
+        status = start_on_disk(work, vertex_order, start, error);
+    }
+    if (status == ORB_OK)
+        memcpy(embedding->position, start, n * sizeof *start);
+done:
+    free(start);
+    free(vertex_order);
+    embedding->report.seconds_initial = monitor_clock() - began;
+    return status;
+}
+
+/* The minimiser, the affine modulus, and the energy of what came out. */
+static orb_status minimise(workshop *work, orb_error *error) {
+    orb_embedding *embedding = work->embedding;
+    orb_report *report = &embedding->report;
+    orb_minimum minimum;
+    orb_status status = newton_minimise(work->problem, work->system, work->order, embedding->position, &minimum,
+                                        &work->monitor, error);
+    if (status != ORB_OK)
+        return status;
+    modulus_choose(embedding);
+    double complex *turn = malloc(((size_t)embedding->copies->n_copies + 1) * sizeof *turn);
+    embedding->placed = malloc(((size_t)embedding->copies->n_copies + 1) * sizeof *embedding->placed);
+    if (!turn || !embedding->placed) {
+        free(turn);
+        return error_memory(error);
+    }
+    problem_place(work->problem, embedding->position, embedding->placed, turn);
+    free(turn);
+    report->energy = problem_energy(work->problem, embedding->placed, NULL, NULL, NULL, NULL, NULL);
+    report->iterations = minimum.iterations;
+    report->relative_gradient = minimum.relative_gradient;
+    report->factor_nonzeros = minimum.factor_nonzeros;
+    report->seconds_assemble += minimum.seconds_assemble;
+    report->seconds_analyze += minimum.seconds_analyze;
+    report->seconds_factor = minimum.seconds_factor;
+    report->seconds_solve = minimum.seconds_solve;
+    return ORB_OK;
+}
+
+static orb_status certify(workshop *work, orb_error *error) {
+    double start = monitor_clock();
+    orb_embedding *embedding = work->embedding;
+    orb_status status = certificate_check(embedding, error);
+    if (status == ORB_OK)
+        status = distortion_measure(embedding, error);
+    if (status == ORB_OK)
+        status = embedding_finish(embedding, error);
+    embedding->report.seconds_certify = monitor_clock() - start;
+    return status;
+}
+
+static orb_status run_stages(workshop *work, const orb_mesh_arrays *arrays, int32_t *orders, orb_error *error) {
+    double start = monitor_clock();
+    orb_status status = monitor_report(&work->monitor, "topology", 0, error);
+    if (status == ORB_OK)
+        status = read_input(work, arrays, orders, error);
+    work->embedding->report.seconds_topology = monitor_clock() - start;
+    if (status == ORB_OK)
+        status = monitor_report(&work->monitor, "cut", 0.05, error);
+    if (status == ORB_OK)
+        status = cut_and_glue(work, orders, error);
+    if (status == ORB_OK)
+        status = monitor_report(&work->monitor, "order", 0.1, error);
+    if (status == ORB_OK)
+        status = set_up_system(work, error);
+    if (status == ORB_OK)
+        status = monitor_report(&work->monitor, "start", 0.2, error);
+    if (status == ORB_OK)
+        status = find_start(work, error);
+    if (status == ORB_OK)
+        status = monitor_report(&work->monitor, "minimise", 0.3, error);
+    if (status == ORB_OK)
+        status = minimise(work, error);
+    if (status == ORB_OK)
+        status = monitor_report(&work->monitor, "certify", 0.9, error);
+    if (status == ORB_OK)
+        status = certify(work, error);
+    if (status == ORB_OK)
+        status = monitor_report(&work->monitor, "done", 1, error);
+    work->embedding->report.seconds_total = monitor_clock() - start;
+    return status;
+}
+
+orb_status orb_embed(const orb_mesh_arrays *mesh, const orb_request *request, orb_embedding **result,
+                     orb_error *error) {
+    if (!result)
+        return error_set(error, ORB_BAD_ARGUMENT, "orb_embed needs a place for its result");
+    *result = NULL;
+    if (!mesh || !request || request->n_cones < 0 || (request->n_cones > 0 && !request->cones))
+        return error_set(error, ORB_BAD_ARGUMENT, "orb_embed needs a mesh, a request and its cones");
+    workshop work = {.request = request, .monitor = {request->progress, request->user, 0}};
+    int32_t *orders = malloc(((size_t)request->n_cones + 1) * sizeof *orders);
+    work.embedding = calloc(1, sizeof *work.embedding);
+    orb_status status = error_memory(error);
+    if (orders && work.embedding)
+        status = run_stages(&work, mesh, orders, error);
+    free(orders);
+    free(work.order);
+    system_free(work.system);
+    problem_free(work.problem);
+    cut_free(work.disk);
+    if (status != ORB_OK) {
+        orb_embedding_free(work.embedding);
+        return status;
+    }
+    *result = work.embedding;
+    return error_set(error, ORB_OK, "%s", "");
+}

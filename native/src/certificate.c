@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "certificate.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "select.h"
+
+static const double pi = 3.14159265358979323846;
+static const double seam_tolerance = 1e-8;  /* of the median edge */
+static const double angle_tolerance = 1e-7; /* radians */
+static const double area_tolerance = 1e-7;  /* relative */
+
+int certificate_orientation(const orb_geometry *geometry, const orb_point corners[3]) {
+    double best = -1;
+    int sign = 0;
+    for (int k = 0; k < 3; k++) {
+        double complex s = geometry_toward(geometry, corners[k], corners[(k + 1) % 3]);
+        double complex t = geometry_toward(geometry, corners[k], corners[(k + 2) % 3]);
+        double sine = cimag(conj(s) * t), size = cabs(s) * cabs(t);
+        double score = size > 0 ? fabs(sine) / size : 0;
+        if (score > best) {
+            best = score;
+            sign = (sine > 0) - (sine < 0);
+        }
+    }
+    return sign;
+}
+
+static void triangle_corners(const orb_embedding *embedding, int32_t t, orb_point corners[3]) {
+    for (int c = 0; c < 3; c++)
+        corners[c] = embedding->placed[embedding->copies->triangles[3 * (size_t)t + (size_t)c]];
+}
+
+static orb_status check_orientation(orb_embedding *embedding, orb_error *error) {
+    int32_t named[ORB_MAX_ELEMENTS], n_named = 0;
+    int64_t flipped = 0, without_area = 0;
+    for (int32_t t = 0; t < embedding->mesh->n_triangles; t++) {
+        orb_point corners[3];
+        triangle_corners(embedding, t, corners);
+        if (certificate_orientation(embedding->tile->geometry, corners) > 0)
+            continue;
+        if (n_named < ORB_MAX_ELEMENTS)
+            named[n_named++] = t;
+        flipped++;
+        without_area += !(mesh_triangle_area(embedding->mesh, t) > 0);
+    }
+    embedding->report.flipped = flipped;
+    if (flipped == 0)
+        return ORB_OK;
+    if (flipped == without_area)
+        return error_set_elements(error, ORB_ZERO_AREA_TRIANGLE, ORB_TRIANGLE, named, n_named, flipped,
+                                  "%lld triangles without area stay flat on the tile, first triangle %d: dissolve "
+                                  "degenerate faces, or take uniform weights",
+                                  (long long)flipped, (int)named[0]);
+    return error_set_elements(error, ORB_CERTIFICATE_FAILED, ORB_TRIANGLE, named, n_named, flipped,
+                              "%lld triangles are flipped on the tile, first triangle %d: raise the clamp or take "
+                              "uniform weights, which cannot flip",
+                              (long long)flipped, (int)named[0]);
+}
+
+/* Both copies of every edge have one length. */
+static orb_status check_seams(orb_embedding *embedding, orb_error *error) {
+    const orb_mesh *mesh = embedding->mesh;
+    const int32_t *triangles = embedding->copies->triangles;
+    double *lengths = malloc(((size_t)mesh->n_edges + 1) * sizeof *lengths);
+    if (!lengths)
+        return error_memory(error);
+    double gap = 0;
+    int32_t worst[2] = {0, 0};
+    for (int32_t e = 0; e < mesh->n_edges; e++) {
+        int32_t h = mesh->edge_halfedge[e], twin = mesh->twin[h];
+        int32_t ends[2][2] = {{triangles[h], triangles[halfedge_next(h)]},
+                              {triangles[halfedge_next(twin)], triangles[twin]}};
+        double side[2];
+        for (int k = 0; k < 2; k++)
+            side[k] = geometry_distance(embedding->tile->geometry, embedding->placed[ends[k][0]],
+                                        embedding->placed[ends[k][1]]);
+        lengths[e] = side[0];
+        double difference = fabs(side[0] - side[1]);
+        if (difference > gap || difference != difference) {
+            gap = difference;
+            worst[0] = halfedge_from(mesh, h);
+            worst[1] = halfedge_to(mesh, h);
+        }
+    }
+    double median = select_kth(lengths, mesh->n_edges, mesh->n_edges / 2);
+    free(lengths);
+    embedding->report.seam_residual = gap / median;
+    if (embedding->report.seam_residual < seam_tolerance)
+        return ORB_OK;
+    return error_set_elements(error, ORB_CERTIFICATE_FAILED, ORB_EDGE, worst, 2, 1,
+                              "the two sides of the seam edge %d-%d differ by %.1e of an edge", (int)worst[0],
+                              (int)worst[1], embedding->report.seam_residual);
+}
+
+/* Angle sums at the vertices, and the area of all triangles. */
+static orb_status check_angles(orb_embedding *embedding, double *area, orb_error *error) {
+    const orb_mesh *mesh = embedding->mesh;
+    const orb_geometry *geometry = embedding->tile->geometry;
+    double *sum = calloc((size_t)mesh->n_vertices + 1, sizeof *sum);
+    if (!sum)
+        return error_memory(error);
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
+        orb_point corners[3];
+        triangle_corners(embedding, t, corners);
+        for (int c = 0; c < 3; c++) {
+            double complex s = geometry_toward(geometry, corners[c], corners[(c + 1) % 3]);
+            double complex r = geometry_toward(geometry, corners[c], corners[(c + 2) % 3]);
+            double complex turn = conj(s) * r;
+            sum[mesh->triangles[3 * t + c]] += atan2(cimag(turn), creal(turn));
+            if (c == 0)
+                *area += geometry_triangle_area(geometry, s, r);
+        }
+    }
+    for (int32_t v = 0; v < mesh->n_vertices; v++)
+        sum[v] -= mesh->vertex_halfedge[v] < 0 ? 0 : 2 * pi;
+    for (int32_t c = 0; c < embedding->tile->n_cones; c++)
+        sum[embedding->cones[c]] += 2 * pi - 2 * pi / embedding->tile->orders[c];
+    int32_t worst = 0;
+    for (int32_t v = 0; v < mesh->n_vertices; v++)
+        if (fabs(sum[v]) > fabs(sum[worst]) || sum[v] != sum[v])
+            worst = v;
+    embedding->report.angle_residual = fabs(sum[worst]);
+    free(sum);
+    if (embedding->report.angle_residual < angle_tolerance)
+        return ORB_OK;
+    return error_set_elements(error, ORB_CERTIFICATE_FAILED, ORB_VERTEX, &worst, 1, 1,
+                              "the angles around vertex %d are off by %.1e", (int)worst,
+                              embedding->report.angle_residual);
+}
+
+orb_status certificate_check(orb_embedding *embedding, orb_error *error) {
+    double area = 0;
+    orb_status status = check_orientation(embedding, error);
+    if (status == ORB_OK)
+        status = check_seams(embedding, error);
+    if (status == ORB_OK)
+        status = check_angles(embedding, &area, error);
+    if (status != ORB_OK)
+        return status;
+    double expected = tile_area(embedding->tile, embedding->signature->euler);
+    embedding->report.area_residual = fabs(area - expected) / expected;
+    if (embedding->report.area_residual < area_tolerance)
+        return ORB_OK;
+    return error_set(error, ORB_CERTIFICATE_FAILED, "the triangles' area is off by %.1e of the orbifold's",
+                     embedding->report.area_residual);
+}

@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "distortion.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+typedef struct affine {
+    double area;          /* on the mesh */
+    double tile_area;     /* in the geometry */
+    double complex a, b;  /* the map y -> a y + b conj(y) from a plane holding the triangle */
+} affine;
+
+static affine triangle_map(const orb_embedding *embedding, int32_t t) {
+    const orb_mesh *mesh = embedding->mesh;
+    const orb_geometry *geometry = embedding->tile->geometry;
+    double e[2][3];
+    for (int c = 0; c < 2; c++)
+        for (int k = 0; k < 3; k++)
+            e[c][k] = mesh->vertices[3 * (size_t)mesh->triangles[3 * t + c + 1] + (size_t)k] -
+                      mesh->vertices[3 * (size_t)mesh->triangles[3 * t] + (size_t)k];
+    affine map = {.area = mesh_triangle_area(mesh, t)};
+    double length = sqrt(e[0][0] * e[0][0] + e[0][1] * e[0][1] + e[0][2] * e[0][2]);
+    if (!(map.area > 0) || !(length > 0))
+        return (affine){0};
+    double along = (e[0][0] * e[1][0] + e[0][1] * e[1][1] + e[0][2] * e[1][2]) / length;
+    double complex from[2] = {length, CMPLX(along, 2 * map.area / length)};
+    orb_point p[3];
+    for (int c = 0; c < 3; c++)
+        p[c] = embedding->placed[embedding->copies->triangles[3 * t + c]];
+    double complex to[2] = {geometry_log(geometry, p[0], p[1]), geometry_log(geometry, p[0], p[2])};
+    map.tile_area = geometry_triangle_area(geometry, geometry_toward(geometry, p[0], p[1]),
+                                           geometry_toward(geometry, p[0], p[2]));
+    double complex divisor = from[0] * conj(from[1]) - conj(from[0]) * from[1];
+    map.a = (to[0] * conj(from[1]) - to[1] * conj(from[0])) / divisor;
+    map.b = (to[1] * from[0] - to[0] * from[1]) / divisor;
+    return map;
+}
+
+void distortion_covariance(const orb_embedding *embedding, double covariance[3]) {
+    covariance[0] = covariance[1] = covariance[2] = 0;
+    for (int32_t t = 0; t < embedding->mesh->n_triangles; t++) {
+        affine map = triangle_map(embedding, t);
+        double complex x = map.a + map.b, y = CMPLX(0, 1) * (map.a - map.b); /* the columns of J */
+        covariance[0] += map.area * (creal(x) * creal(x) + creal(y) * creal(y));
+        covariance[1] += map.area * (creal(x) * cimag(x) + creal(y) * cimag(y));
+        covariance[2] += map.area * (cimag(x) * cimag(x) + cimag(y) * cimag(y));
+    }
+}
+
+typedef struct sample {
+    double value, area;
+} sample;
+
+static int by_value(const void *a, const void *b) {
+    double x = ((const sample *)a)->value, y = ((const sample *)b)->value;
+    return (x > y) - (x < y);
+}
+
+static double weighted_median(sample *samples, int32_t n, double total) {
+    qsort(samples, (size_t)n, sizeof *samples, by_value);
+    double below = 0;
+    for (int32_t i = 0; i < n; i++) {
+        below += samples[i].area;
+        if (2 * below >= total)
+            return samples[i].value;
+    }
+    return n > 0 ? samples[n - 1].value : 1;
+}
+
+orb_status distortion_measure(orb_embedding *embedding, orb_error *error) {
+    int32_t m = embedding->mesh->n_triangles, used = 0;
+    sample *conformal = malloc(((size_t)m + 1) * sizeof *conformal);
+    if (!conformal)
+        return error_memory(error);
+    double area = 0, tile_area = 0, mean = 0, worst = 1, log_mean = 0, log_square = 0, stretch = 0, squeeze = 0;
+    for (int32_t t = 0; t < m; t++) {
+        affine map = triangle_map(embedding, t);
+        if (!(map.area > 0))
+            continue;
+        double large = cabs(map.a) + cabs(map.b), small = fabs(cabs(map.a) - cabs(map.b));
+        double ratio = large / small, scale = log(map.tile_area / map.area);
+        area += map.area;
+        tile_area += map.tile_area;
+        mean += map.area * ratio;
+        worst = fmax(worst, ratio);
+        log_mean += map.area * scale;
+        log_square += map.area * scale * scale;
+        stretch += map.area * (large * large + small * small);
+        squeeze += map.area * (1 / (large * large) + 1 / (small * small));
+        conformal[used++] = (sample){ratio, map.area};
+    }
+    orb_report *report = &embedding->report;
+    if (area > 0) {
+        double relative = tile_area / area;
+        report->quasi_conformal_mean = mean / area;
+        report->quasi_conformal_median = weighted_median(conformal, used, area);
+        report->quasi_conformal_max = worst;
+        report->log_area_std = sqrt(fmax(0, log_square / area - pow(log_mean / area, 2)));
+        report->symmetric_dirichlet = (stretch / relative + squeeze * relative) / (4 * area);
+    }
+    free(conformal);
+    return ORB_OK;
+}
