@@ -155,7 +155,7 @@ def start_embedding(
         orders = _integers(orders, (-1,), "orders", "ORB_BAD_ORDER", None)
         if len(orders) != len(picked):
             raise OrbifoldError(
-                "ORB_BAD_ORDER", f"There are {len(orders)} orders for {len(picked)} cones; give one order for each cone."
+                "ORB_BAD_ORDER", f"There are {len(orders)} orders for {len(picked)} cones; give one for each cone."
             )
     kind, edge_weights = _weights(weights)
     try:

@@ -101,7 +101,8 @@ def test_library_exports_these_functions_and_nothing_else():
 
 
 def test_every_status_has_its_name():
-    names = re.findall(r"^\s+(ORB_\w+)", re.search(r"enum orb_status {(.*?)}", HEADER.read_text(), re.DOTALL).group(1), re.M)
+    body = re.search(r"enum orb_status {(.*?)}", HEADER.read_text(), re.DOTALL).group(1)
+    names = re.findall(r"^\s+(ORB_\w+)", body, re.MULTILINE)
     assert [core.library().orb_status_name(k).decode() for k in range(len(names))] == names
 
 

@@ -32,6 +32,7 @@ def test_no_file_of_core_prints():
 
 
 def test_import_is_quiet_and_loads_nothing():
-    code = f"import sys; sys.path.insert(0, {str(CORE.parent)!r}); import core; print(core.library.cache_info().currsize)"
+    code = f"import sys; sys.path.insert(0, {str(CORE.parent)!r}); import core; "
+    code += "print(core.library.cache_info().currsize)"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert (run.stdout, run.stderr) == ("0\n", "")
