@@ -194,6 +194,7 @@ main() {
     fi
     rm -rf "$out/stamp" "$out/flags.mk" "$work"
     mkdir -p "$work"
+    say "fetching and compiling the sources, once, about a minute"
     if download; then
         build_own
         echo "$key" >"$out/stamp"

@@ -1,0 +1,249 @@
+#!/usr/bin/env bash
+# Orbifold UV: the one command.  Nothing has to be done before it: what is missing is asked of apt.
+#
+#   ./build.sh run  [MESH] [--orbifold SIGNATURE] [--cones i,j,k | --cones auto] [--orders n,n,n]
+#                   [--weights conformal|cotan|mean-value|uniform] [--output DIR] [--blender PATH]
+#   ./build.sh test [--blender PATH]      everything; ends with `N passed, N failed`
+#   ./build.sh native                     build the library only, into addon/core/
+#   ./build.sh package                    build/orbifold_uv-VERSION.zip, to install in Blender
+#   ./build.sh bench                      seconds of each stage on several meshes
+#   ./build.sh docs [--blender PATH]      the pictures of the documentation
+#   ./build.sh deps                       install what all of these need, and nothing else
+#   ./build.sh clean                      remove what was built
+#
+# VERBOSE=1 shows what the compiler and Blender say, DEBUG=1 builds the library for a debugger, CC chooses the compiler.
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+build=$root/build
+verbose=${VERBOSE:-}
+jobs=$(nproc 2>/dev/null || echo 2)
+blender=""                              # --blender, made absolute
+arguments=()                            # the command line without verb and --blender
+
+die() { echo "error: $*" >&2; exit 1; }
+usage() { sed -n '2,/^set -euo/ { /^#/ s/^# \{0,1\}//p }' "${BASH_SOURCE[0]}"; }
+
+# ---- what the machine must have
+
+missing=()
+
+# want PACKAGE [COMMAND]: unless the command, or else the package, is there.
+want() {
+    if [ -n "${2:-}" ]; then
+        command -v "$2" >/dev/null && return
+    elif ! command -v dpkg-query >/dev/null || [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; then
+        return 0
+    fi
+    missing+=("$1")
+}
+
+want_native() {
+    want gcc "${CC:-cc}"
+    want make make
+    want patch patch
+    want xz-utils xz
+    want libc6-dev
+    want libopenblas-serial-dev
+}
+
+# want_python MODULE...: Debian's own Python when it has none of the ones asked for.
+want_python() {
+    local module
+    [ -z "$(find_python "$@")" ] || return 0
+    want python3 /usr/bin/python3
+    for module; do want "python3-$module"; done
+}
+
+# libegl1 and libgl1: Blender looks for them while it starts, its package does not depend on both.
+want_blender() {
+    [ -z "$blender" ] || return 0
+    command -v blender >/dev/null || { want blender; want libegl1; want libgl1; }
+}
+
+install_missing() {
+    [ ${#missing[@]} -gt 0 ] || return 0
+    local log=$build/apt.log root_shell=()
+    command -v apt-get >/dev/null || die "please install ${missing[*]}: there is no apt-get here to do it"
+    if [ "$(id -u)" != 0 ]; then
+        command -v sudo >/dev/null || die "please install ${missing[*]}: this takes root, and there is no sudo here"
+        root_shell=(sudo)
+    fi
+    echo "installing ${missing[*]}"
+    mkdir -p "$build"
+    local install=("${root_shell[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}")
+    if ! "${install[@]}" >"$log" 2>&1 </dev/null; then
+        # Package lists are absent or out of date.
+        "${root_shell[@]}" apt-get update >>"$log" 2>&1 </dev/null || true
+        "${install[@]}" >>"$log" 2>&1 </dev/null || { tail -n 20 "$log" >&2; die "apt could not install ${missing[*]}"; }
+    fi
+    missing=()
+    hash -r
+}
+
+# The first Python that can import the modules; Debian's first, the one that its packages are for.
+find_python() {
+    local python imports
+    imports=$(IFS=,; echo "$*")
+    for python in /usr/bin/python3 python3; do
+        if "$python" -c "import $imports" 2>/dev/null; then echo "$python"; return; fi
+    done
+}
+
+find_blender() {
+    if [ -n "$blender" ]; then echo "$blender"; else command -v blender || die "there is no blender in PATH"; fi
+}
+
+# ---- the verbs
+
+deps() { want_native; want_python numpy pytest; want_blender; install_missing; }
+
+make_native() { make -C "$root/native" --no-print-directory -j "$jobs" $([ -n "$verbose" ] && echo VERBOSE=1 || echo -s) "$@"; }
+
+native() { want_native; install_missing; make_native all; }
+
+run() {
+    want_blender
+    native
+    local program log status=0
+    program=$(find_blender)
+    log=$(mktemp "$build/run.XXXXXX")
+    trap "rm -f '$log'" EXIT             # expanded now: log is local
+    "$program" --background --factory-startup --python-exit-code 1 --python "$root/addon/run.py" -- "${arguments[@]}" 2>&1 </dev/null |
+        tee "$log" | show_run || status=1
+    if grep -q '^orbifold error: ' "$log"; then
+        [ -n "$verbose" ] || sed -n 's/^orbifold error: /error: /p' "$log" | paste -s -d ' ' >&2
+        return 1
+    fi
+    [ $status = 0 ] || { [ -n "$verbose" ] || cat "$log" >&2; die "Blender stopped before it was done"; }
+}
+
+# Of all that Blender says, our own lines.
+show_run() { if [ -n "$verbose" ]; then cat; else sed -u -n 's/^orbifold: //p'; fi; }
+
+package() {
+    local version zip folder=$build/package/orbifold_uv
+    [ -n "$(find_python zipfile)" ] || want python3
+    native
+    version=$(sed -n 's/^version *= *"\([^"]*\)".*/\1/p' "$root/addon/blender_manifest.toml")
+    [ -n "$version" ] || die "addon/blender_manifest.toml names no version"
+    zip=$build/orbifold_uv-$version.zip
+    rm -rf "$build/package" "$build"/orbifold_uv-*.zip
+    mkdir -p "$folder"
+    cp -R "$root/addon/." "$root/LICENSE" "$folder/"
+    cp -R "$build/suitesparse/licenses" "$folder/" 2>/dev/null || true
+    find "$folder" \( -name __pycache__ -o -name '.*' -o -name '*.blend1' -o -name '*~' \) -prune -exec rm -rf {} +
+    find "$folder" -exec touch -d '2000-01-01 00:00Z' {} +
+    (cd "$build/package" && "$(find_python zipfile)" -m zipfile -c "$zip" orbifold_uv)
+    echo "${zip#"$PWD"/}"
+}
+
+bench() {
+    want_python numpy
+    native
+    "$(find_python numpy)" "$root/tests/bench/bench.py" "${arguments[@]}"
+}
+
+docs() {
+    [ -e "$root/docs/make_pictures.sh" ] || die "there is no docs/make_pictures.sh"
+    want_blender
+    native
+    ORBIFOLD_BLENDER=$(find_blender) bash "$root/docs/make_pictures.sh" "${arguments[@]}"
+}
+
+clean() { rm -rf "$build" "$root/out" "$root/addon/core/liborbifold.so"; }
+
+# ---- test
+
+passed=0 failed=0 skipped=0
+
+fail() { echo "FAIL $*"; failed=$((failed + 1)); }
+
+# program LABEL COMMAND...: one that prints `ok`, `FAIL` and `skip` lines.
+program() {
+    local label=$1 log=$build/test.log status=0 failures
+    shift
+    echo "-- $label"
+    (cd "$root" && timeout 1200 "$@") >"$log" 2>&1 </dev/null || status=$?
+    cat "$log"
+    failures=$(grep -c '^FAIL ' "$log" || true)
+    passed=$((passed + $(grep -c '^ok ' "$log" || true)))
+    skipped=$((skipped + $(grep -c '^skip ' "$log" || true)))
+    failed=$((failed + failures))
+    [ $status = 0 ] || [ "$failures" != 0 ] || fail "$label: stopped with status $status"
+    [ $status != 0 ] || [ "$failures" = 0 ] || fail "$label: reports failures but exits with 0"
+}
+
+# c_programs TARGET FOLDER: build the C tests and run them; one that does not build is a failure.
+c_programs() {
+    local source name
+    make_native --keep-going "$1" || fail "make $1"
+    for source in "$root"/tests/native/test_*.c; do
+        name=$(basename "$source" .c)
+        if [ -x "$2/$name" ]; then program "$1 $name" "$2/$name"; fi
+    done
+}
+
+# python_tests FOLDER: pytest's report is the count.
+python_tests() {
+    local report=$build/$1.xml status=0 total bad left_out
+    compgen -G "$root/tests/$1/test_*.py" >/dev/null || return 0
+    echo "-- tests/$1"
+    rm -f "$report"
+    (cd "$root" && PYTHONDONTWRITEBYTECODE=1 timeout 3000 "$(find_python numpy pytest)" -m pytest -p no:cacheprovider \
+        -q -rs --junitxml "$report" "tests/$1") </dev/null || status=$?
+    if [ ! -s "$report" ]; then fail "tests/$1: pytest left no report, status $status"; return; fi
+    total=$(report_count tests "$report") left_out=$(report_count skipped "$report")
+    bad=$(($(report_count failures "$report") + $(report_count errors "$report")))
+    passed=$((passed + total - bad - left_out)) failed=$((failed + bad)) skipped=$((skipped + left_out))
+    case $status in 0 | 5) ;; *) [ $bad != 0 ] || fail "tests/$1: pytest ended with status $status" ;; esac
+}
+
+report_count() { grep -o '<testsuite [^>]*' "$2" | grep -o " $1=\"[0-9]*\"" | tr -dc 0-9; }
+
+run_tests() {
+    deps
+    mkdir -p "$build"
+    c_programs test "$build/native"
+    export ASAN_OPTIONS=exitcode=99 UBSAN_OPTIONS=print_stacktrace=1
+    c_programs test-asan "$build/native/asan"
+    if "$root/build.sh" package; then
+        program exports bash "$root/tests/native/exports.sh" "$root/addon/core/liborbifold.so"
+        ORBIFOLD_BLENDER=$(find_blender)
+        ORBIFOLD_ZIP=$(echo "$build"/orbifold_uv-*.zip)
+        export ORBIFOLD_BLENDER ORBIFOLD_ZIP
+        python_tests core
+        python_tests blender
+    else
+        fail "package"
+    fi
+    echo "$passed passed, $failed failed$([ $skipped = 0 ] || echo ", $skipped skipped")"
+    [ $failed = 0 ]
+}
+
+# ---- the command line
+
+main() {
+    local verb=${1:-help}
+    [ $# = 0 ] || shift
+    while [ $# -gt 0 ]; do
+        case $1 in
+            --blender) [ $# -gt 1 ] || die "--blender needs a path"; blender=$2; shift 2 ;;
+            --blender=*) blender=${1#*=}; shift ;;
+            *) arguments+=("$1"); shift ;;
+        esac
+    done
+    if [ -n "$blender" ]; then
+        blender=$(realpath -s -- "$(command -v -- "$blender")" 2>/dev/null) || die "--blender: there is no such program"
+    fi
+    case $verb in
+        run | bench | docs) "$verb" ;;
+        test | native | package | clean | deps)
+            [ ${#arguments[@]} = 0 ] || die "$verb takes no argument '${arguments[0]}'"
+            case $verb in test) run_tests ;; *) "$verb" ;; esac ;;
+        help | -h | --help) usage ;;
+        *) usage >&2; die "there is no verb '$verb'" ;;
+    esac
+}
+
+main "$@"
