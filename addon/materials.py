@@ -22,7 +22,7 @@ def make_material(
     into the file. An earlier one of this object is replaced."""
     chart = chart or result.chart
     name = f"Orbifold {obj.name}"
-    image = _image(name, pattern.image(result, chart, result.uv_chart(chart), size))
+    picture = pattern.picture(result, chart, result.uv_chart(chart), size)
     material = bpy.data.materials.get(name) or bpy.data.materials.new(name)
     blender_mesh.enable_nodes(material)
     tree = material.node_tree
@@ -30,11 +30,15 @@ def make_material(
     output = _node(tree, "ShaderNodeOutputMaterial", 600)
     shader = _node(tree, "ShaderNodeBsdfPrincipled", 300)
     texture = _node(tree, "ShaderNodeTexImage", 0)
-    coordinates = _node(tree, "ShaderNodeUVMap", -200)
+    frame = _node(tree, "ShaderNodeMapping", -200)
+    coordinates = _node(tree, "ShaderNodeUVMap", -400)
     coordinates.uv_map = blender_mesh.UV_MAP
-    texture.image = image
+    texture.image = _image(name, picture.pixels)
+    frame.inputs["Scale"].default_value[:2] = 1 / (picture.high - picture.low)
+    frame.inputs["Location"].default_value[:2] = -picture.low / (picture.high - picture.low)
     shader.inputs["Roughness"].default_value = 0.6
-    tree.links.new(coordinates.outputs["UV"], texture.inputs["Vector"])
+    tree.links.new(coordinates.outputs["UV"], frame.inputs["Vector"])
+    tree.links.new(frame.outputs["Vector"], texture.inputs["Vector"])
     tree.links.new(texture.outputs["Color"], shader.inputs["Base Color"])
     tree.links.new(shader.outputs["BSDF"], output.inputs["Surface"])
     return material
