@@ -166,7 +166,7 @@ def library() -> ctypes.CDLL:
     """The native library with every prototype set. OrbifoldError "ORB_NO_LIBRARY" where it cannot be used."""
     if not LIBRARY.is_file():
         raise OrbifoldError(
-            "ORB_NO_LIBRARY", f"The native library {LIBRARY.name} is not in {LIBRARY.parent}; run `./build.sh native`."
+            "ORB_NO_LIBRARY", f"the native library {LIBRARY.name} is not in {LIBRARY.parent}; run `./build.sh native`"
         )
     try:
         loaded = ctypes.CDLL(str(LIBRARY))
@@ -174,11 +174,11 @@ def library() -> ctypes.CDLL:
             function = getattr(loaded, name)
             function.restype, function.argtypes = result, arguments
     except (OSError, AttributeError) as reason:
-        raise OrbifoldError("ORB_NO_LIBRARY", f"The native library cannot be loaded here: {reason}.") from reason
+        raise OrbifoldError("ORB_NO_LIBRARY", f"the native library cannot be loaded here: {reason}") from reason
     version = loaded.orb_version().decode()
     if version != VERSION:  # structures may differ then
         raise OrbifoldError(
-            "ORB_NO_LIBRARY", f"The native library is version {version}, not {VERSION}; build it again."
+            "ORB_NO_LIBRARY", f"the native library is version {version}, not {VERSION}; build it again"
         )
     return loaded
 
@@ -232,10 +232,10 @@ def read_signature(text: str) -> tuple[SignatureInfo, list[int]]:
 def encode_signature(text: str) -> bytes:
     """A signature for C: UTF-8 without a NUL, at which C would stop reading."""
     if not isinstance(text, str):
-        raise OrbifoldError("ORB_BAD_ARGUMENT", f"A signature is a string such as '442', not {type(text).__name__}.")
+        raise OrbifoldError("ORB_BAD_ARGUMENT", f"a signature is a string such as '442', not {type(text).__name__}")
     if "\0" in text:
         raise OrbifoldError(
-            "ORB_BAD_SIGNATURE", "The signature contains a NUL character.", [text.index("\0")], "character"
+            "ORB_BAD_SIGNATURE", "the signature contains a NUL character", [text.index("\0")], "character"
         )
     return text.encode(errors="replace")
 

@@ -155,13 +155,13 @@ def start_embedding(
         orders = _integers(orders, (-1,), "orders", "ORB_BAD_ORDER", None)
         if len(orders) != len(picked):
             raise OrbifoldError(
-                "ORB_BAD_ORDER", f"There are {len(orders)} orders for {len(picked)} cones; give one for each cone."
+                "ORB_BAD_ORDER", f"{len(orders)} orders are given for {len(picked)} cones; give one for each cone"
             )
     kind, edge_weights = _weights(weights)
     try:
         clamp = float(clamp)
     except (TypeError, ValueError) as reason:
-        raise OrbifoldError("ORB_BAD_ARGUMENT", "The clamp must be a positive number.") from reason
+        raise OrbifoldError("ORB_BAD_ARGUMENT", "the clamp is not a number; give a positive one") from reason
     if chart is not None:  # known before a long computation, not after it
         _chart_number(chart, geometry_of(signature))
     job = binding.Job(points, faces, signature, picked, orders, kind, clamp, edge_weights)
@@ -218,9 +218,9 @@ def _rows_of_three(values: ArrayLike, what: str) -> np.ndarray:
     try:
         array = np.array(values, dtype=np.float64, order="C")
     except (TypeError, ValueError) as reason:
-        raise OrbifoldError("ORB_BAD_ARGUMENT", f"The {what} are not an array of numbers: {reason}.") from reason
+        raise OrbifoldError("ORB_BAD_ARGUMENT", f"the {what} are not an array of numbers: {reason}") from reason
     if array.ndim != 2 or array.shape[1] != 3:
-        raise OrbifoldError("ORB_BAD_ARGUMENT", f"The {what} have the shape {array.shape}; give three numbers a row.")
+        raise OrbifoldError("ORB_BAD_ARGUMENT", f"the {what} have the shape {array.shape}; give three numbers a row")
     return array
 
 
@@ -229,21 +229,21 @@ def _integers(values: ArrayLike, shape: tuple[int, ...], what: str, status: str,
     try:
         array = np.asarray(values)
     except ValueError as reason:  # rows of different lengths
-        raise OrbifoldError("ORB_BAD_ARGUMENT", f"The {what} are not an array of integers: {reason}.") from reason
+        raise OrbifoldError("ORB_BAD_ARGUMENT", f"the {what} are not an array of integers: {reason}") from reason
     if array.size == 0:
         return np.zeros((0, *shape[1:]), np.int32)
     if array.dtype.kind not in "iu":
-        raise OrbifoldError("ORB_BAD_ARGUMENT", f"The {what} are of the type {array.dtype}; give integers.")
+        raise OrbifoldError("ORB_BAD_ARGUMENT", f"the {what} are of the type {array.dtype}; give integers")
     if array.ndim != len(shape) or array.shape[1:] != shape[1:]:
         wanted = "three integers a row" if len(shape) == 2 else "a plain sequence"
-        raise OrbifoldError("ORB_BAD_ARGUMENT", f"The {what} have the shape {array.shape}; give {wanted}.")
+        raise OrbifoldError("ORB_BAD_ARGUMENT", f"the {what} have the shape {array.shape}; give {wanted}")
     beyond = (array < INT32.min) | (array > INT32.max)
     if beyond.any():
         rows = np.flatnonzero(beyond.reshape(len(array), -1).any(1))
         shown = rows if element == "triangle" else array[rows]
         raise OrbifoldError(
             status,
-            f"An entry of the {what} is beyond 32-bit integers, at position {rows[0]}.",
+            f"entry {rows[0]} of the {what} is beyond 32-bit integers; give indices that are there",
             [int(entry) for entry in shown[: binding.MAX_ELEMENTS]],
             element,
             len(rows),
@@ -259,7 +259,7 @@ def _weights(weights: str | ArrayLike) -> tuple[int, np.ndarray | None]:
         there = ", ".join(f"'{name}'" for name in binding.WEIGHTS)
         raise OrbifoldError(
             "ORB_BAD_ARGUMENT",
-            f"There are no weights '{weights}' in this version; use {there} or an array of rows i, j, w.",
+            f"there are no weights '{weights}' in this version; use {there} or an array of rows i, j, w",
         )
     return binding.WEIGHTS[weights], None
 
@@ -270,7 +270,7 @@ def _chart_number(chart: str, geometry: str) -> int:
     if chart not in CHARTS[geometry]:
         raise OrbifoldError(
             "ORB_BAD_ARGUMENT",
-            f"There is no chart '{chart}' for {geometry} orbifolds; use {' or '.join(CHARTS[geometry])}.",
+            f"there is no chart '{chart}' for {geometry} orbifolds; use {' or '.join(CHARTS[geometry])}",
         )
     return binding.CHARTS[chart]
 

@@ -173,7 +173,7 @@ orb_status orb_job_start(const orb_mesh_arrays *mesh, const orb_request *request
     if (job)
         *job = NULL;
     if (!mesh || !request || !job)
-        return error_set(error, ORB_BAD_ARGUMENT, "A job needs a mesh, a request and a place for the job; give all three.");
+        return error_set(error, ORB_BAD_ARGUMENT, "orb_job_start needs a mesh, a request and a place for the job");
     orb_job *made = job_create(mesh, request);
     if (!made)
         return error_memory(error);
@@ -230,7 +230,7 @@ orb_status orb_job_finish(orb_job *job, orb_embedding **embedding, orb_error *er
     if (embedding)
         *embedding = NULL;
     if (!job)
-        return error_set(error, ORB_BAD_ARGUMENT, "There is no job to finish; start one first.");
+        return error_set(error, ORB_BAD_ARGUMENT, "there is no job to finish; start one first");
     pthread_mutex_lock(&job->mutex);
     while (!job->done && !job->cancelled)
         pthread_cond_wait(&job->changed, &job->mutex);
@@ -239,7 +239,7 @@ orb_status orb_job_finish(orb_job *job, orb_embedding **embedding, orb_error *er
     pthread_t thread = job->thread;
     bool done = job->done;
     if (job->cancelled) {
-        status = error_set(error, ORB_CANCELLED, "The computation was cancelled.");
+        status = error_set(error, ORB_CANCELLED, "cancelled");
     } else {
         if (error)
             *error = job->error;

@@ -68,8 +68,9 @@ def authors(name):
     return about, arrays, vertices, triangles
 
 
-@pytest.mark.parametrize("name, signature", [("t1", "442"), ("t2", "333"), ("t3", "632")])
+@pytest.mark.parametrize("name, signature", [("t1", "442"), ("t2", "333"), ("t3", "623")])
 def test_authors_euclidean_result_up_to_a_similarity(name, signature):
+    """(The angles of their t3 are those of 6, 2, 3, in this sequence.)"""
     about, arrays, vertices, triangles = authors(f"e_sphere_{name}_cot")
     result = core.embed(vertices, triangles, signature, about["cones_0based"])
     ours, theirs = chord_lengths(corners_of(result)), chord_lengths(arrays["X"][arrays["T"]])
