@@ -8,41 +8,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A half-edge with one end of its edge, for sorting. */
+typedef struct side {
+    int32_t vertex, halfedge;
+} side;
+
 /* What mesh_create needs only while it runs. */
 typedef struct workspace {
-    int32_t *order; /* [n_triangles*3] half-edges sorted by lower, then higher vertex of their edge */
-    int32_t *count; /* [n_vertices] */
+    side *sorted;   /* [n_triangles*3] by the lower, then the higher vertex of the edge; `vertex` is the higher one */
+    int32_t *end;   /* [n_vertices] one past the last of `sorted` that has this lower vertex */
+    int32_t *spare; /* [n_vertices] */
 } workspace;
-
-static int32_t lower_vertex(const orb_mesh *mesh, int32_t h)
-{
-    const int32_t a = halfedge_from(mesh, h), b = halfedge_to(mesh, h);
-    return a < b ? a : b;
-}
-
-static int32_t higher_vertex(const orb_mesh *mesh, int32_t h)
-{
-    const int32_t a = halfedge_from(mesh, h), b = halfedge_to(mesh, h);
-    return a < b ? b : a;
-}
 
 static int32_t opposite_vertex(const orb_mesh *mesh, int32_t h)
 {
     return mesh->triangles[halfedge_previous(h)];
-}
-
-static bool same_edge(const orb_mesh *mesh, int32_t h, int32_t g)
-{
-    return lower_vertex(mesh, h) == lower_vertex(mesh, g) && higher_vertex(mesh, h) == higher_vertex(mesh, g);
-}
-
-/* One past the last entry of `order` that lies on the edge of order[begin]. */
-static int32_t edge_end(const orb_mesh *mesh, const int32_t *order, int32_t begin)
-{
-    const int32_t n = 3 * mesh->n_triangles;
-    int32_t end = begin + 1;
-    while (end < n && same_edge(mesh, order[begin], order[end])) end++;
-    return end;
 }
 
 /* --- sorting and linking the half-edges ----------------------------------------------------------------------- */
@@ -58,20 +38,40 @@ static void counts_to_places(int32_t *count, int32_t n)
     }
 }
 
-/* Two stable counting sorts, the less significant key first. `first_pass` [n_triangles*3] is overwritten. */
-static void sort_halfedges(const orb_mesh *mesh, workspace *work, int32_t *first_pass)
+/* Two stable counting sorts, the less significant key first. A key's place, moved on with each of its items, ends as
+ * one past the last of them. The first sort's result lies in mesh->edge and mesh->twin, which are not in use yet:
+ * fresh memory would cost as much time as the sort. */
+static void sort_halfedges(orb_mesh *mesh, workspace *work)
 {
     const int32_t n = 3 * mesh->n_triangles;
-    const size_t bytes = (size_t)mesh->n_vertices * sizeof *work->count;
-    memset(work->count, 0, bytes);
-    for (int32_t h = 0; h < n; h++) work->count[higher_vertex(mesh, h)]++;
-    counts_to_places(work->count, mesh->n_vertices);
-    for (int32_t h = 0; h < n; h++) first_pass[work->count[higher_vertex(mesh, h)]++] = h;
+    int32_t *high_place = work->spare, *low_place = work->end, *by_high_low = mesh->edge, *by_high = mesh->twin;
+    memset(high_place, 0, (size_t)mesh->n_vertices * sizeof *high_place);
+    memset(low_place, 0, (size_t)mesh->n_vertices * sizeof *low_place);
+    for (int32_t h = 0; h < n; h++) {
+        const int32_t a = halfedge_from(mesh, h), b = halfedge_to(mesh, h);
+        low_place[a < b ? a : b]++;
+        high_place[a < b ? b : a]++;
+    }
+    counts_to_places(high_place, mesh->n_vertices);
+    counts_to_places(low_place, mesh->n_vertices);
+    for (int32_t h = 0; h < n; h++) {
+        const int32_t a = halfedge_from(mesh, h), b = halfedge_to(mesh, h);
+        const int32_t place = high_place[a < b ? b : a]++;
+        by_high[place] = h;
+        by_high_low[place] = a < b ? a : b;
+    }
+    for (int32_t high = 0, i = 0; high < mesh->n_vertices; high++)
+        for (; i < high_place[high]; i++)
+            work->sorted[low_place[by_high_low[i]]++] = (side){high, by_high[i]};
+}
 
-    memset(work->count, 0, bytes);
-    for (int32_t h = 0; h < n; h++) work->count[lower_vertex(mesh, h)]++;
-    counts_to_places(work->count, mesh->n_vertices);
-    for (int32_t i = 0; i < n; i++) work->order[work->count[lower_vertex(mesh, first_pass[i])]++] = first_pass[i];
+/* One past the last half-edge on the edge of sorted[begin]; *low, at first 0, is moved on to its lower vertex. */
+static int32_t edge_end(const workspace *work, int32_t begin, int32_t *low)
+{
+    while (work->end[*low] <= begin) ++*low;
+    int32_t end = begin + 1;
+    while (end < work->end[*low] && work->sorted[end].vertex == work->sorted[begin].vertex) end++;
+    return end;
 }
 
 /* A triangle that stands on an edge, by its third vertex. */
@@ -88,21 +88,21 @@ static int compare_standing(const void *left, const void *right)
 
 /* Adds the triangles on one edge that repeat another one, of those that have the edge between their two lower
  * vertices (so that each pair is met on one edge only). */
-static orb_status find_repeated(const orb_mesh *mesh, const int32_t *halfedges, int32_t n, orb_found *repeated,
+static orb_status find_repeated(const orb_mesh *mesh, const side *sides, int32_t n, orb_found *repeated,
                                 orb_error *error)
 {
+    const int32_t high = sides[0].vertex;
     if (n == 2) { /* nearly always; sorting it would cost more than all else here */
-        const int32_t h = halfedges[0], g = halfedges[1], apex = opposite_vertex(mesh, h);
-        if (apex == opposite_vertex(mesh, g) && apex > higher_vertex(mesh, h))
-            found_add(repeated, (h > g ? h : g) / 3);
+        const int32_t h = sides[0].halfedge, g = sides[1].halfedge, apex = opposite_vertex(mesh, h);
+        if (apex > high && apex == opposite_vertex(mesh, g)) found_add(repeated, (h > g ? h : g) / 3);
         return ORB_OK;
     }
     standing *standings = malloc((size_t)n * sizeof *standings);
     if (!standings) return error_memory(error);
     size_t kept = 0;
     for (int32_t i = 0; i < n; i++) {
-        const int32_t apex = opposite_vertex(mesh, halfedges[i]);
-        if (apex > higher_vertex(mesh, halfedges[i])) standings[kept++] = (standing){apex, halfedges[i] / 3};
+        const int32_t apex = opposite_vertex(mesh, sides[i].halfedge);
+        if (apex > high) standings[kept++] = (standing){apex, sides[i].halfedge / 3};
     }
     qsort(standings, kept, sizeof *standings, compare_standing);
     for (size_t i = 1; i < kept; i++)
@@ -112,19 +112,19 @@ static orb_status find_repeated(const orb_mesh *mesh, const int32_t *halfedges, 
 }
 
 /* Repeated triangles, edges with more than two triangles, neighbours that disagree about the outside. */
-static orb_status check_edges(const orb_mesh *mesh, const int32_t *order, orb_error *error)
+static orb_status check_edges(const orb_mesh *mesh, const workspace *work, orb_error *error)
 {
     orb_found repeated = {0}, crowded = {0}, disagreeing = {0};
-    for (int32_t begin = 0, end; begin < 3 * mesh->n_triangles; begin = end) {
-        end = edge_end(mesh, order, begin);
-        const int32_t h = order[begin], a = lower_vertex(mesh, h), b = higher_vertex(mesh, h);
+    for (int32_t begin = 0, low = 0, end; begin < 3 * mesh->n_triangles; begin = end) {
+        end = edge_end(work, begin, &low);
         if (end - begin < 2) continue;
-        const orb_status status = find_repeated(mesh, order + begin, end - begin, &repeated, error);
+        const side *sides = work->sorted + begin;
+        const orb_status status = find_repeated(mesh, sides, end - begin, &repeated, error);
         if (status != ORB_OK) return status;
         if (end - begin > 2)
-            found_add_edge(&crowded, a, b);
-        else if (halfedge_from(mesh, h) == halfedge_from(mesh, order[begin + 1]))
-            found_add_edge(&disagreeing, a, b);
+            found_add_edge(&crowded, low, sides[0].vertex);
+        else if (halfedge_from(mesh, sides[0].halfedge) == halfedge_from(mesh, sides[1].halfedge))
+            found_add_edge(&disagreeing, low, sides[0].vertex);
     }
     if (repeated.found > 0)
         return error_set_elements(error, ORB_REPEATED_TRIANGLE, ORB_TRIANGLE, repeated.elements, repeated.entries,
@@ -150,17 +150,16 @@ static orb_status check_edges(const orb_mesh *mesh, const int32_t *order, orb_er
 }
 
 /* Numbers the edges and pairs their half-edges; at most two lie on each. */
-static orb_status link_halfedges(orb_mesh *mesh, const int32_t *order, orb_error *error)
+static orb_status link_halfedges(orb_mesh *mesh, const workspace *work, orb_error *error)
 {
     const int32_t n = 3 * mesh->n_triangles;
     mesh->n_edges = 0;
-    for (int32_t i = 0; i < n; i++)
-        if (i == 0 || !same_edge(mesh, order[i - 1], order[i])) mesh->n_edges++;
+    for (int32_t begin = 0, low = 0; begin < n; begin = edge_end(work, begin, &low)) mesh->n_edges++;
     mesh->edge_halfedge = malloc((size_t)mesh->n_edges * sizeof *mesh->edge_halfedge);
     if (!mesh->edge_halfedge) return error_memory(error);
-    for (int32_t begin = 0, end, e = 0; begin < n; begin = end, e++) {
-        end = edge_end(mesh, order, begin);
-        const int32_t h = order[begin], g = end - begin == 2 ? order[begin + 1] : -1;
+    for (int32_t begin = 0, low = 0, e = 0, end; begin < n; begin = end, e++) {
+        end = edge_end(work, begin, &low);
+        const int32_t h = work->sorted[begin].halfedge, g = end - begin == 2 ? work->sorted[begin + 1].halfedge : -1;
         mesh->edge_halfedge[e] = h;
         mesh->edge[h] = e;
         mesh->twin[h] = g;
@@ -257,13 +256,13 @@ static int32_t count_boundary_loops(const orb_mesh *mesh, int32_t *seen)
     return loops;
 }
 
-static orb_status count_topology(orb_mesh *mesh, workspace *work, orb_error *error)
+static orb_status count_topology(orb_mesh *mesh, const workspace *work, orb_error *error)
 {
     orb_found components = {0};
     const orb_status status = find_components(mesh, &components, error);
     if (status != ORB_OK) return status;
     mesh->n_components = (int32_t)components.found;
-    mesh->n_boundary_loops = count_boundary_loops(mesh, work->count);
+    mesh->n_boundary_loops = count_boundary_loops(mesh, work->spare);
     mesh->euler = mesh->n_used_vertices - mesh->n_edges + mesh->n_triangles;
     mesh->genus = (2 * mesh->n_components - mesh->euler - mesh->n_boundary_loops) / 2;
     return ORB_OK;
@@ -297,23 +296,26 @@ orb_status mesh_create(const orb_mesh_arrays *arrays, orb_mesh **mesh, orb_error
     if (status != ORB_OK) return status;
 
     made = calloc(1, sizeof *made);
-    work.order = malloc(3 * (size_t)arrays->n_triangles * sizeof *work.order);
-    work.count = malloc((size_t)arrays->n_vertices * sizeof *work.count);
-    if (!made || !work.order || !work.count) {
+    const size_t n = (size_t)arrays->n_vertices, m3 = 3 * (size_t)arrays->n_triangles;
+    work.sorted = malloc(m3 * sizeof *work.sorted);
+    work.end = malloc(n * sizeof *work.end);
+    work.spare = malloc(n * sizeof *work.spare);
+    if (!made || !work.sorted || !work.end || !work.spare) {
         status = error_memory(error);
         goto done;
     }
     if ((status = copy_arrays(arrays, made, error)) != ORB_OK) goto done;
-    sort_halfedges(made, &work, made->edge); /* the edges have no numbers yet, so their array is free for it */
-    if ((status = check_edges(made, work.order, error)) != ORB_OK) goto done;
-    if ((status = link_halfedges(made, work.order, error)) != ORB_OK) goto done;
-    if ((status = link_vertices(made, work.count, error)) != ORB_OK) goto done;
+    sort_halfedges(made, &work);
+    if ((status = check_edges(made, &work, error)) != ORB_OK) goto done;
+    if ((status = link_halfedges(made, &work, error)) != ORB_OK) goto done;
+    if ((status = link_vertices(made, work.spare, error)) != ORB_OK) goto done;
     if ((status = count_topology(made, &work, error)) != ORB_OK) goto done;
     *mesh = made;
     made = NULL;
 done:
-    free(work.order);
-    free(work.count);
+    free(work.sorted);
+    free(work.end);
+    free(work.spare);
     mesh_free(made);
     return status;
 }

@@ -161,34 +161,32 @@ typedef struct row_faults {
     orb_found no_edge, bad, twice, missing;
 } row_faults;
 
-static int32_t edge_higher_vertex(const orb_mesh *mesh, int32_t e)
-{
-    const int32_t h = mesh->edge_halfedge[e], a = halfedge_from(mesh, h), b = halfedge_to(mesh, h);
-    return a < b ? b : a;
-}
+/* The edges, to be found by their vertices. */
+typedef struct edge_table {
+    int32_t *first; /* [n_vertices + 1] first[v] ... first[v + 1] - 1 are the edges whose lower vertex is v */
+    int32_t *high;  /* [n_edges] the higher vertex, ascending within each of these ranges */
+} edge_table;
 
-/* first[v] ... first[v + 1] - 1 are the edges whose lower vertex is v: edges are numbered in that order. */
-static void edges_by_lower_vertex(const orb_mesh *mesh, int32_t *first)
+static void edge_table_fill(const orb_mesh *mesh, edge_table *table)
 {
-    int32_t e = 0;
-    for (int32_t v = 0; v <= mesh->n_vertices; v++) {
-        for (; e < mesh->n_edges; e++) {
-            const int32_t h = mesh->edge_halfedge[e], a = halfedge_from(mesh, h), b = halfedge_to(mesh, h);
-            if ((a < b ? a : b) >= v) break;
-        }
-        first[v] = e;
+    int32_t v = 0;
+    for (int32_t e = 0; e < mesh->n_edges; e++) {
+        const int32_t h = mesh->edge_halfedge[e], a = halfedge_from(mesh, h), b = halfedge_to(mesh, h);
+        while (v <= (a < b ? a : b)) table->first[v++] = e;
+        table->high[e] = a < b ? b : a;
     }
+    while (v <= mesh->n_vertices) table->first[v++] = mesh->n_edges;
 }
 
 /* The edge between two vertices, by bisection; -1 if there is none. */
-static int32_t edge_between(const orb_mesh *mesh, const int32_t *first, int32_t a, int32_t b)
+static int32_t edge_between(const edge_table *table, int32_t a, int32_t b)
 {
     const int32_t low = a < b ? a : b, high = a < b ? b : a;
-    int32_t begin = first[low], end = first[low + 1];
+    int32_t begin = table->first[low], end = table->first[low + 1];
     while (begin < end) {
-        const int32_t middle = begin + (end - begin) / 2, vertex = edge_higher_vertex(mesh, middle);
-        if (vertex == high) return middle;
-        if (vertex < high)
+        const int32_t middle = begin + (end - begin) / 2;
+        if (table->high[middle] == high) return middle;
+        if (table->high[middle] < high)
             begin = middle + 1;
         else
             end = middle;
@@ -235,14 +233,14 @@ static orb_status report_faults(const row_faults *faults, const orb_request *req
     return ORB_OK;
 }
 
-static void read_row(const orb_mesh *mesh, const int32_t *first, const double *row, int32_t row_number,
+static void read_row(const orb_mesh *mesh, const edge_table *table, const double *row, int32_t row_number,
                      double *weights, row_faults *faults)
 {
     if (!is_vertex(mesh, row[0]) || !is_vertex(mesh, row[1])) {
         if (faults->no_vertices++ == 0) faults->first_row = row_number;
         return;
     }
-    const int32_t i = (int32_t)row[0], j = (int32_t)row[1], e = edge_between(mesh, first, i, j);
+    const int32_t i = (int32_t)row[0], j = (int32_t)row[1], e = edge_between(table, i, j);
     if (e < 0) {
         found_add_edge(&faults->no_edge, i, j);
     } else if (weights[e] == NOT_GIVEN) {
@@ -260,19 +258,27 @@ static orb_status given_weights(const orb_mesh *mesh, const orb_request *request
     if (request->n_edge_weights < 0 || (request->n_edge_weights > 0 && !request->edge_weights))
         return error_set(error, ORB_BAD_ARGUMENT,
                          "the array of edge weights is a null pointer or its count is negative: give rows i, j, w_ij");
-    int32_t *first = malloc(((size_t)mesh->n_vertices + 1) * sizeof *first);
-    if (!first) return error_memory(error);
+    edge_table table = {malloc(((size_t)mesh->n_vertices + 1) * sizeof *table.first),
+                        malloc((size_t)mesh->n_edges * sizeof *table.high)};
     row_faults faults = {0};
-    edges_by_lower_vertex(mesh, first);
+    orb_status status = ORB_OK;
+    if (!table.first || !table.high) {
+        status = error_memory(error);
+        goto done;
+    }
+    edge_table_fill(mesh, &table);
     for (int32_t e = 0; e < mesh->n_edges; e++) weights[e] = NOT_GIVEN;
     for (int32_t r = 0; r < request->n_edge_weights; r++)
-        read_row(mesh, first, request->edge_weights + 3 * (size_t)r, r, weights, &faults);
-    free(first);
+        read_row(mesh, &table, request->edge_weights + 3 * (size_t)r, r, weights, &faults);
     for (int32_t e = 0; e < mesh->n_edges; e++) {
         const int32_t h = mesh->edge_halfedge[e];
         if (weights[e] == NOT_GIVEN) found_add_edge(&faults.missing, halfedge_from(mesh, h), halfedge_to(mesh, h));
     }
-    return report_faults(&faults, request, mesh, error);
+    status = report_faults(&faults, request, mesh, error);
+done:
+    free(table.first);
+    free(table.high);
+    return status;
 }
 
 orb_status weights_compute(const orb_mesh *mesh, const orb_request *request, double *weights, int64_t *n_clamped,
