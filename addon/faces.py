@@ -43,6 +43,8 @@ def layout_of(result: Result, arrays: MeshArrays, chart: str) -> FaceLayout:
     moved: list[int] = []
     for members in groups:
         moved += _put_together(members, arrays.triangles, z, curvature)
+    touched = np.concatenate([np.asarray(group) for group in groups])
+    seams = _seams_of(result.seams, arrays.triangles, touched, z)
     placed = placed.copy()
     placed[moved] = charts.to_points(z[moved], curvature)
     uv = uv.copy()
@@ -50,8 +52,9 @@ def layout_of(result: Result, arrays: MeshArrays, chart: str) -> FaceLayout:
     uv[moved] = charts.chart_of(chart, result.geometry, result.embedding[result.cut_triangles[unmoved]], uv[unmoved]).to_uv(
         placed[moved]
     )
-    touched = np.concatenate([np.asarray(group) for group in groups])
-    return FaceLayout(uv, placed, _seams_of(result.seams, arrays.triangles, touched, z), len(groups))
+    for corners in (uv, placed):
+        corners[touched] = _first_of_each(arrays.loops[touched], corners[touched])
+    return FaceLayout(uv, placed, seams, len(groups))
 
 
 # ------------------------------------------------------------------------------------------------- geometry
@@ -124,6 +127,13 @@ def _put_together(members: list[int], triangles: np.ndarray, z: np.ndarray, curv
             waiting.remove(there)
             reached.append(there)
     return moved
+
+
+def _first_of_each(loops: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """`values` (t, 3, w) at the face corners `loops` (t, 3): the same value, to the last digit, wherever a corner
+    occurs in several triangles."""
+    _, first, place = np.unique(loops.ravel(), return_index=True, return_inverse=True)
+    return values.reshape(loops.size, -1)[first][place.ravel()].reshape(values.shape)
 
 
 def _seams_of(seams: np.ndarray, triangles: np.ndarray, touched: np.ndarray, z: np.ndarray) -> np.ndarray:

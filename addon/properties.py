@@ -30,9 +30,8 @@ def read_orders(text: str) -> Optional[list[int]]:
 def set_cones(mesh: bpy.types.Mesh, vertices: list[int], orders: list[Optional[int]]) -> None:
     """Replace the cones. An order of None is a new cone's: the signature's next one, or 2."""
     typed = read_orders(mesh.orbifold.signature) or []
-    keeps_text = len(vertices) <= len(typed) and all(
-        order is None or order == typed[place] for place, order in enumerate(orders)
-    )
+    fills = None in orders and len(vertices) <= len(typed)  # a signature that was typed first
+    keeps_text = fills and all(order in (None, wanted) for order, wanted in zip(orders, typed))
     chosen = [
         order if order is not None else (typed[place] if place < len(typed) else NEW_ORDER)
         for place, order in enumerate(orders)

@@ -122,7 +122,7 @@ class EmbeddingOperator:
                 return
             if select_culprits(context, self._arrays, error) and context.active_object.mode != "EDIT":
                 sentence += "; edit mode shows it selected"
-        self.report({"ERROR"}, sentence + ".")
+        self.report({"ERROR"}, f"{sentence[:1].upper()}{sentence[1:]}.")
 
     def _finish(self, context: bpy.types.Context) -> set[str]:
         job, self._job = self._job, None

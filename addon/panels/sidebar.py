@@ -25,7 +25,8 @@ def signature_state(signature: str, n_cones: int) -> SignatureState:
     try:
         read = core.parse_signature(signature)
     except core.OrbifoldError as error:
-        return SignatureState(str(error), False)
+        sentence = str(error)
+        return SignatureState(sentence[:1].upper() + sentence[1:], False)
     if not read.supported:
         return SignatureState("This version maps spheres with cones only, without mirrors or handles", False)
     wanted = len(read.orders)
