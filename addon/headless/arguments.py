@@ -35,15 +35,22 @@ class Arguments:
     object_name: Optional[str]
 
 
+class HelpWanted(Exception):
+    """`--help` was among the arguments; str() is the text to print."""
+
+
 class _Parser(argparse.ArgumentParser):
-    """Errors are raised, not printed with the usage and exit status 2."""
+    """Errors are raised, not printed with the usage and exit status 2; so is the help."""
+
+    def print_help(self, file: object = None) -> NoReturn:
+        raise HelpWanted(self.format_help())
 
     def error(self, message: str) -> NoReturn:
         raise RunError(f"{message}; see ./build.sh run --help")
 
 
 def read_arguments(words: Sequence[str]) -> Arguments:
-    """Raises RunError for anything that is not understood; `--help` prints the usage and exits with status 0."""
+    """Raises RunError for anything that is not understood, HelpWanted for `--help`."""
     read = _parser().parse_args(list(words))
     return Arguments(
         mesh=read.mesh,

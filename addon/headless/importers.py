@@ -165,7 +165,13 @@ def _join_vertices(mesh: bpy.types.Mesh) -> None:
     """Join vertices at exactly one place: a glTF file splits them wherever normals or texture coordinates differ."""
     joined = bmesh.new()
     joined.from_mesh(mesh)
-    bmesh.ops.remove_doubles(joined, verts=joined.verts, dist=0.0)
+    first: dict[tuple[float, float, float], bmesh.types.BMVert] = {}
+    onto = {}
+    for vert in joined.verts:
+        keeper = first.setdefault(tuple(vert.co), vert)
+        if keeper is not vert:
+            onto[vert] = keeper
+    bmesh.ops.weld_verts(joined, targetmap=onto)
     joined.to_mesh(mesh)
     joined.free()
 

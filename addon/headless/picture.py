@@ -7,15 +7,17 @@ y away from the camera, z up. The floor is z = 0.
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, Sequence
+from typing import Sequence
 
 import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
 from .. import blender_mesh
+from .clip import clip_to_disk
 from .tiling import Tiling, drawn
 
 RESOLUTION = (960, 540)
@@ -24,16 +26,15 @@ WIDTH = 4.7
 HEIGHT = WIDTH * RESOLUTION[1] / RESOLUTION[0]
 LENS = 85.0  # millimetres; the sensor is 36 wide
 TILT = np.radians(10.0)  # the camera looks down by this much, so that the floor fills the background
-TURN = np.radians(38.0)  # the object is seen from front and side
+TURNS = (38, -38, 70, -70, 142, -142, 110, -110)  # degrees: ways to see the object, from front and side first
 OBJECT_BOX = (2.15, 2.15)  # widest and highest that the object is drawn
 PANEL_RADIUS = 1.04
 PALENESS = 0.45
 OBJECT_X, PANEL_X = -1.13, 1.20
 WINDOW = 1.45  # in the plane: the radius of the round window on the tiling, in radii of the tile
+DISK_WINDOW = 2.2  # the same in the Poincaré disk, unless all of it can be shown
 
-CONE_COLOURS = ((0.90, 0.16, 0.10), (0.05, 0.35, 0.85), (0.98, 0.75, 0.05), (0.05, 0.60, 0.30), (0.55, 0.15, 0.75),
-                (0.95, 0.45, 0.05), (0.02, 0.60, 0.70), (0.85, 0.15, 0.50))
-FLOOR = (0.42, 0.43, 0.45)
+FLOOR = (0.52, 0.53, 0.55)
 
 
 @dataclass(frozen=True)
@@ -43,8 +44,9 @@ class Subject:
     cones: Sequence[int]
     tiling: Tiling
     cone_of_corner: Sequence[int]  # which cone (0, 1, ...) each of tiling.cones is a copy of
+    colours: np.ndarray  # (cones, 3)
     material: bpy.types.Material
-    paint: Callable[[bpy.types.Mesh], None]  # texture coordinates and attributes for a mesh of the tile's triangles
+    uv: np.ndarray  # (m, 3, 2) texture coordinates of the tile's triangles
 
 
 def render_picture(subject: Subject, path: Path) -> None:
@@ -62,8 +64,7 @@ def render_picture(subject: Subject, path: Path) -> None:
 def _place_object(scene: bpy.types.Scene, subject: Subject) -> None:
     """The object turned, standing on the floor, as large as its box allows, with a ball at each cone."""
     standing = np.array(subject.obj.matrix_world.to_3x3())
-    c, s = np.cos(TURN), np.sin(TURN)
-    turned = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ standing
+    turned = _best_turn(subject, standing) @ standing
     seen = subject.vertices @ turned.T
     low, high = seen.min(axis=0), seen.max(axis=0)
     size = np.maximum(high - low, 1e-30)
@@ -73,7 +74,18 @@ def _place_object(scene: bpy.types.Scene, subject: Subject) -> None:
     shown.matrix_world = Matrix.Translation(origin) @ Matrix((scale * turned).tolist()).to_4x4()
     scene.collection.objects.link(shown)
     for number, cone in enumerate(subject.cones):
-        _add_ball(scene, origin + scale * seen[cone], 0.032, number)
+        _add_ball(scene, origin + scale * seen[cone], 0.036, subject.colours[number])
+
+
+def _best_turn(subject: Subject, standing: np.ndarray) -> np.ndarray:
+    """The rotation about the vertical that turns most cones towards the camera; the first of TURNS among equals."""
+    normals = np.array([subject.obj.data.vertices[int(cone)].normal for cone in subject.cones])
+    normals = normals @ np.linalg.inv(standing)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True) + 1e-30
+    eye = np.array([0, -np.cos(TILT), np.sin(TILT)])
+    turns = [np.array(Matrix.Rotation(np.radians(turn), 3, "Z")) for turn in TURNS]
+    facing = [int((normals @ turn.T @ eye > 0.1).sum()) for turn in turns]
+    return turns[int(np.argmax(facing))]
 
 
 # ------------------------------------------------------------------------------------------------- the panel
@@ -86,20 +98,22 @@ def _place_panel(scene: bpy.types.Scene, subject: Subject) -> None:
     centre = np.array([PANEL_X, 0.0, _middle_height()])
     to_view = _centring(tiling)
     images = [to_view @ element for element in tiling.group]
-    radius = 1.0  # of the sphere and of the disk
-    if tiling.curvature == 0:
+    radius = 1.0  # of the sphere and of the whole Poincaré disk
+    if tiling.curvature <= 0:
         tile_radius = _tile_radius(tiling, images[0])
-        radius = WINDOW * tile_radius
+        radius = WINDOW * tile_radius if tiling.curvature == 0 else min(1.0, DISK_WINDOW * tile_radius)
         images = _images_within(tiling, images, radius + tile_radius)
+        _add_backing(scene, centre, face)
     scale = PANEL_RADIUS / radius
-    faded = _faded(subject.material, centre)
+    glows = tiling.curvature <= 0
+    plain, pale = (_panel_material(subject.material, paleness, glows) for paleness in (0.0, PALENESS))
     for number, image in enumerate(images):
-        _add_image(scene, subject, image, face * scale, centre, faded if number else subject.material,
+        _add_image(scene, subject, image, face * scale, centre, radius, pale if number else plain,
                    lift=0.0 if number else 0.012)
     towards_camera = -np.array([0, np.cos(TILT), -np.sin(TILT)]) * 0.03
     tile = centre + drawn(tiling.curvature, tiling.points @ images[0].T) @ (face * scale).T
     for corner, number in zip(tiling.cones, subject.cone_of_corner):
-        _add_ball(scene, tile[corner] + towards_camera, 0.03, number)
+        _add_ball(scene, tile[corner] + towards_camera, 0.032, subject.colours[number])
     _add_outline(scene, tile + towards_camera * 0.6, tiling.triangles)
 
 
@@ -122,46 +136,68 @@ def _centring(tiling: Tiling) -> np.ndarray:
 
 
 def _tile_radius(tiling: Tiling, image: np.ndarray) -> float:
-    return float(np.hypot(*(tiling.points[tiling.cones] @ image.T)[:, :2].T).max())
+    """As drawn: how far the tile's cones are from its middle."""
+    return float(np.linalg.norm(drawn(tiling.curvature, tiling.points[tiling.cones] @ image.T), axis=1).max())
 
 
 def _images_within(tiling: Tiling, images: list[np.ndarray], reach: float) -> list[np.ndarray]:
-    """Those whose middle is within `reach` of the tile's middle, which is the origin of images[0]."""
+    """Those whose middle is drawn within `reach` of the tile's middle, which images[0] takes to the origin."""
     middle = np.linalg.inv(images[0])[:, 2]
-    return [image for image in images if np.hypot(*(image @ middle)[:2]) <= reach]
+    return [image for image in images if np.linalg.norm(drawn(tiling.curvature, (image @ middle)[None])) <= reach]
+
+
+def _add_backing(scene: bpy.types.Scene, centre: np.ndarray, face: np.ndarray) -> None:
+    """A pale disk behind the tiling, seen where no image of the tile was drawn."""
+    angles = np.linspace(0, 2 * np.pi, 256, endpoint=False)
+    rim = np.stack([np.cos(angles), np.sin(angles), np.full(256, -0.01)], 1) * PANEL_RADIUS
+    mesh = bpy.data.meshes.new("Orbifold Backing")
+    mesh.from_pydata((centre + rim @ face.T).tolist(), [], [list(range(256))])
+    mesh.materials.append(_plain_material("Orbifold Backing", (0.52, 0.52, 0.54), 0.9))
+    scene.collection.objects.link(bpy.data.objects.new("Orbifold Backing", mesh))
 
 
 def _add_image(scene: bpy.types.Scene, subject: Subject, image: np.ndarray, view: np.ndarray, centre: np.ndarray,
-               material: bpy.types.Material, lift: float) -> None:
-    """One image of the tile. In the plane and on the sphere it is an instance of one mesh, moved; in the Poincaré
-    disk, where isometries are not linear, a mesh of its own."""
+               window: float, material: bpy.types.Material, lift: float) -> None:
+    """One image of the tile. On the sphere all are instances of one mesh; in the plane and in the Poincaré disk each
+    has its own, cut off at the window."""
     tiling = subject.tiling
-    if tiling.curvature < 0:
-        mesh = _tile_mesh(subject, drawn(-1, tiling.points @ image.T))
-        motion = np.eye(4)
+    if tiling.curvature > 0:
+        mesh = bpy.data.meshes.get("Orbifold Tile") or _mesh(
+            drawn(1, tiling.points), tiling.triangles, subject.uv, subject.material)
+        motion = view @ image * (1 + lift)
+        place = centre
     else:
-        mesh = bpy.data.meshes.get("Orbifold Tile") or _tile_mesh(subject, drawn(tiling.curvature, tiling.points))
-        motion = np.eye(4)
-        motion[:3, :3] = image
-        if tiling.curvature == 0:  # homogeneous coordinates: the last column is the translation
-            motion[:3, :3] = [[*image[0, :2], 0], [*image[1, :2], 0], [0, 0, 1]]
-            motion[:2, 3] = image[:2, 2]
+        corners = drawn(tiling.curvature, tiling.points @ image.T)[tiling.triangles][..., :2]
+        corners, uv = clip_to_disk(corners, subject.uv, window)
+        if len(corners) == 0:
+            return
+        flat = np.column_stack([corners.reshape(-1, 2), np.zeros(3 * len(corners))])
+        mesh = _mesh(flat, np.arange(3 * len(corners)).reshape(-1, 3), uv, material)
+        motion = view
+        place = centre + lift * view[:, 2] / np.linalg.norm(view[:, 2])
     obj = bpy.data.objects.new("Orbifold Tile", mesh)
     scene.collection.objects.link(obj)
-    place = np.eye(4)
-    place[:3, :3] = view * (1 + lift if tiling.curvature > 0 else 1)
-    place[:3, 3] = centre + (0 if tiling.curvature > 0 else 1) * lift * view[:, 2] / np.linalg.norm(view[:, 2])
-    obj.matrix_world = Matrix((place @ motion).tolist())
+    obj.matrix_world = Matrix.Translation(place) @ Matrix(motion.tolist()).to_4x4()
     obj.material_slots[0].link = "OBJECT"
     obj.material_slots[0].material = material
 
 
-def _tile_mesh(subject: Subject, places: np.ndarray) -> bpy.types.Mesh:
+def _mesh(points: np.ndarray, triangles: np.ndarray, uv: np.ndarray, material: bpy.types.Material) -> bpy.types.Mesh:
+    """points (n, 3), triangles (m, 3), uv (m, 3, 2)."""
     mesh = bpy.data.meshes.new("Orbifold Tile")
-    mesh.from_pydata(places.tolist(), [], subject.tiling.triangles.tolist())
-    mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), bool))
-    mesh.materials.append(subject.material)
-    subject.paint(mesh)
+    n = len(triangles)
+    mesh.vertices.add(len(points))
+    mesh.vertices.foreach_set("co", np.asarray(points, np.float32).ravel())
+    mesh.loops.add(3 * n)
+    mesh.loops.foreach_set("vertex_index", np.asarray(triangles, np.int32).ravel())
+    mesh.polygons.add(n)
+    mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * n, 3, dtype=np.int32))
+    with contextlib.suppress(AttributeError, RuntimeError, TypeError):  # read-only from version 4 on, needed before
+        mesh.polygons.foreach_set("loop_total", np.full(n, 3, np.int32))
+    mesh.polygons.foreach_set("use_smooth", np.ones(n, bool))
+    mesh.update(calc_edges=True)
+    mesh.materials.append(material)
+    blender_mesh.write_uv(mesh, blender_mesh.read_mesh(mesh), uv)
     return mesh
 
 
@@ -190,15 +226,14 @@ def _add_outline(scene: bpy.types.Scene, tile: np.ndarray, triangles: np.ndarray
 # ------------------------------------------------------------------------------------------ small things, light
 
 
-def _add_ball(scene: bpy.types.Scene, place: np.ndarray, radius: float, number: int) -> None:
+def _add_ball(scene: bpy.types.Scene, place: np.ndarray, radius: float, colour: np.ndarray) -> None:
     mesh = bpy.data.meshes.get("Orbifold Cone") or _ball_mesh()
     ball = bpy.data.objects.new("Orbifold Cone", mesh)
     ball.matrix_world = Matrix.Translation(Vector(place)) @ Matrix.Scale(radius, 4)
     scene.collection.objects.link(ball)
     ball.material_slots[0].link = "OBJECT"
-    name = f"Orbifold Cone {number % len(CONE_COLOURS)}"
-    ball.material_slots[0].material = bpy.data.materials.get(name) or _plain_material(
-        name, CONE_COLOURS[number % len(CONE_COLOURS)], 0.25)
+    name = f"Orbifold Cone {tuple(colour)}"
+    ball.material_slots[0].material = bpy.data.materials.get(name) or _plain_material(name, colour, 0.25)
 
 
 def _ball_mesh() -> bpy.types.Mesh:
@@ -224,29 +259,38 @@ def _plain_material(name: str, colour: Sequence[float], roughness: float) -> bpy
     return material
 
 
-def _faded(material: bpy.types.Material, centre: np.ndarray) -> bpy.types.Material:
-    """A copy of the material, paler, and not there outside the round window about `centre`."""
-    faded = material.copy()
-    faded.name = f"{material.name} Faded"
-    nodes, links = faded.node_tree.nodes, faded.node_tree.links
+def _floor_material() -> bpy.types.Material:
+    """Half diffuse, half glowing: shadows stay soft and the noise of few samples low."""
+    material = bpy.data.materials.new("Orbifold Floor")
+    blender_mesh.enable_nodes(material)
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    nodes.clear()
+    output, both = nodes.new("ShaderNodeOutputMaterial"), nodes.new("ShaderNodeAddShader")
+    diffuse, glow = nodes.new("ShaderNodeBsdfDiffuse"), nodes.new("ShaderNodeEmission")
+    for node, part in ((diffuse, 0.55), (glow, 0.5)):
+        node.inputs["Color"].default_value = (*(part * value for value in FLOOR), 1.0)
+        links.new(node.outputs[0], both.inputs[0 if node is diffuse else 1])
+    links.new(both.outputs[0], output.inputs["Surface"])
+    return material
+
+
+def _panel_material(material: bpy.types.Material, paleness: float, glows: bool) -> bpy.types.Material:
+    """The colours of the object's material, mixed with grey; glowing by themselves (no shading, no noise) or lit."""
+    shown = material.copy()
+    shown.name = f"{material.name} Panel"
+    nodes, links = shown.node_tree.nodes, shown.node_tree.links
     output = next(node for node in nodes if node.type == "OUTPUT_MATERIAL" and node.is_active_output)
-    source = output.inputs["Surface"].links[0].from_socket
-    pale, paler = nodes.new("ShaderNodeBsdfDiffuse"), nodes.new("ShaderNodeMixShader")
-    pale.inputs["Color"].default_value = (0.75, 0.75, 0.76, 1.0)
-    paler.inputs[0].default_value = PALENESS
-    links.new(source, paler.inputs[1])
-    links.new(pale.outputs[0], paler.inputs[2])
-    position, distance = nodes.new("ShaderNodeNewGeometry"), nodes.new("ShaderNodeVectorMath")
-    outside, window = nodes.new("ShaderNodeMath"), nodes.new("ShaderNodeMixShader")
-    distance.operation, outside.operation = "DISTANCE", "GREATER_THAN"
-    distance.inputs[1].default_value, outside.inputs[1].default_value = centre, PANEL_RADIUS * 1.001
-    links.new(position.outputs["Position"], distance.inputs[0])
-    links.new(distance.outputs["Value"], outside.inputs[0])
-    links.new(outside.outputs[0], window.inputs[0])
-    links.new(paler.outputs[0], window.inputs[1])
-    links.new(nodes.new("ShaderNodeBsdfTransparent").outputs[0], window.inputs[2])
-    links.new(window.outputs[0], output.inputs["Surface"])
-    return faded
+    lit = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
+    colour = blender_mesh.principled_input(lit, "Base Color").links[0].from_socket
+    shaders = [nodes.new("ShaderNodeEmission" if glows else "ShaderNodeBsdfDiffuse") for _ in range(2)]
+    mix = nodes.new("ShaderNodeMixShader")
+    mix.inputs[0].default_value = paleness
+    links.new(colour, shaders[0].inputs["Color"])
+    shaders[1].inputs["Color"].default_value = (0.72, 0.72, 0.74, 1.0)
+    links.new(shaders[0].outputs[0], mix.inputs[1])
+    links.new(shaders[1].outputs[0], mix.inputs[2])
+    links.new(mix.outputs[0], output.inputs["Surface"])
+    return shown
 
 
 def _light(scene: bpy.types.Scene) -> None:
@@ -264,7 +308,7 @@ def _light(scene: bpy.types.Scene) -> None:
     scene.collection.objects.link(lamp)
     floor = bpy.data.meshes.new("Orbifold Floor")
     floor.from_pydata([(-900, -900, 0), (900, -900, 0), (900, 900, 0), (-900, 900, 0)], [], [(0, 1, 2, 3)])
-    floor.materials.append(_plain_material("Orbifold Floor", FLOOR, 0.9))
+    floor.materials.append(_floor_material())
     scene.collection.objects.link(bpy.data.objects.new("Orbifold Floor", floor))
 
 
@@ -283,7 +327,7 @@ def _render(scene: bpy.types.Scene, path: Path) -> None:
     render, cycles = scene.render, scene.cycles
     render.engine = "CYCLES"
     cycles.device, cycles.samples, cycles.use_denoising = "CPU", SAMPLES, False
-    cycles.use_adaptive_sampling, cycles.seed, cycles.max_bounces = False, 0, 3
+    cycles.use_adaptive_sampling, cycles.seed, cycles.max_bounces = False, 0, 0
     scene.view_settings.view_transform = "Standard"
     render.resolution_x, render.resolution_y = RESOLUTION
     render.resolution_percentage = 100

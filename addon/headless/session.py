@@ -17,9 +17,9 @@ from typing import Iterator, Sequence
 import bpy
 import numpy as np
 
-from .. import blender_mesh, core, faces, materials
+from .. import blender_mesh, core, faces, materials, pattern
 from ..sphere_map import placed_sphere
-from .arguments import Arguments, read_arguments
+from .arguments import Arguments, HelpWanted, read_arguments
 from .errors import RunError
 from .extremities import farthest_vertices
 from .importers import load_object
@@ -46,7 +46,10 @@ class Unwrapped:
 def run(words: Sequence[str]) -> list[str]:
     """What to tell the user. Raises one of EXPECTED, or finds a fault of ours."""
     started = time.perf_counter()
-    arguments = read_arguments(words)
+    try:
+        arguments = read_arguments(words)
+    except HelpWanted as text:
+        return str(text).splitlines()
     orders = core.parse_signature(arguments.signature).orders
     with _quiet():
         unwrapped = _unwrap(arguments, len(orders))
@@ -89,6 +92,8 @@ def _dress(obj: bpy.types.Object, arrays: blender_mesh.MeshArrays, result: core.
     if result.geometry == "spherical":
         blender_mesh.write_shape_key(obj, placed_sphere(result.whole_sphere(), arrays))
     material = materials.make_material(obj, result)
+    mesh.materials.clear()
+    materials.assign(obj, material)
     mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), bool))
     mesh.update()
     return material
@@ -136,14 +141,9 @@ def _subject(unwrapped: Unwrapped) -> Subject:
     tiling = make_tiling(result.geometry, result.embedding, result.cut_triangles, result.cut_to_vertex, result.cones,
                          result.orders, limit)
     rank = {int(cone): number for number, cone in enumerate(result.cones)}
-    uv = result.uv
-
-    def paint(mesh: bpy.types.Mesh) -> None:
-        arrays = blender_mesh.read_mesh(mesh)
-        blender_mesh.write_uv(mesh, arrays, uv)
-
     return Subject(unwrapped.obj, unwrapped.arrays.vertices, result.cones, tiling,
-                   [rank[int(result.cut_to_vertex[corner])] for corner in tiling.cones], unwrapped.material, paint)
+                   [rank[int(result.cut_to_vertex[corner])] for corner in tiling.cones],
+                   pattern.palette(len(result.cones)) ** 2.2, unwrapped.material, result.uv)
 
 
 def _show_material() -> None:
