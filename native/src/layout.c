@@ -6,6 +6,7 @@
 
 #include "embedding.h"
 #include "lattice.h"
+#include "rounding.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -179,7 +180,7 @@ int64_t layout_flipped_float32(int32_t n_triangles, const double *uv) {
     for (int32_t t = 0; t < n_triangles; t++) {
         double f[6];
         for (int k = 0; k < 6; k++)
-            f[k] = (float)uv[6 * (int64_t)t + k];
+            f[k] = rounding_to_float(uv[6 * (int64_t)t + k]);
         flipped += !((f[2] - f[0]) * (f[5] - f[1]) - (f[4] - f[0]) * (f[3] - f[1]) > 0);
     }
     return flipped;

@@ -67,8 +67,8 @@ static const struct {
 };
 enum { N_PLANES = sizeof planes / sizeof *planes };
 
-/* Twice the area of the tile in the coordinate 2 z. */
-static double tile_area(const orb_tile *tile) {
+/* The area of the tile in the coordinate 2 z. */
+static double double_area(const orb_tile *tile) {
     int32_t n = 2 * tile->n_cones - 2;
     double sum = 0;
     for (int32_t i = 0; i < n; i++)
@@ -105,8 +105,8 @@ static void check_cell(const orb_tile *tile, double *shear) {
     int cells = top % 3 == 0 ? 2 : 1;
     double area = cimag(conj(cell.side[0]) * cell.side[1]);
     /* the lattice's cell holds as many tiles as there are rotations */
-    CHECK_NEAR(area / (cells * rotations * tile_area(tile)), 1, 1e-11);
-    CHECK_NEAR(cimag(conj(basis[0]) * basis[1]) / (rotations * tile_area(tile)), 1, 1e-11);
+    CHECK_NEAR(area / (cells * rotations * double_area(tile)), 1, 1e-11);
+    CHECK_NEAR(cimag(conj(basis[0]) * basis[1]) / (rotations * double_area(tile)), 1, 1e-11);
     for (int i = 0; i < 2; i++) { /* the cell's sides are translations */
         double complex b0 = basis[0], b1 = basis[1], side = cell.side[i];
         double det = cimag(conj(b0) * b1), x = cimag(conj(side) * b1) / det, y = cimag(conj(b0) * side) / det;
