@@ -143,7 +143,6 @@ static orb_status minimise(workshop *work, orb_error *error) {
                                         &work->monitor, error);
     if (status != ORB_OK)
         return status;
-    modulus_choose(embedding);
     double complex *turn = malloc(((size_t)embedding->copies->n_copies + 1) * sizeof *turn);
     embedding->placed = malloc(((size_t)embedding->copies->n_copies + 1) * sizeof *embedding->placed);
     if (!turn || !embedding->placed) {
@@ -151,6 +150,8 @@ static orb_status minimise(workshop *work, orb_error *error) {
         return error_memory(error);
     }
     problem_place(work->problem, embedding->position, embedding->placed, turn);
+    if (modulus_choose(embedding))
+        problem_place(work->problem, embedding->position, embedding->placed, turn);
     free(turn);
     report->energy = problem_energy(work->problem, embedding->placed, NULL, NULL, NULL, NULL, NULL);
     report->iterations = minimum.iterations;

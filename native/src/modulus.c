@@ -33,11 +33,11 @@ static linear least_conformal(const double covariance[3], double area) {
     return map;
 }
 
-void modulus_choose(orb_embedding *embedding) {
+bool modulus_choose(orb_embedding *embedding) {
     orb_tile *tile = embedding->tile;
     orb_copies *copies = embedding->copies;
     if (!tile->deforms)
-        return;
+        return false;
     double covariance[3];
     distortion_covariance(embedding, covariance);
     linear map = least_conformal(covariance, tile_area(tile, embedding->signature->euler));
@@ -51,4 +51,5 @@ void modulus_choose(orb_embedding *embedding) {
         copies->isometries[i] = deformed_isometry(map, copies->isometries[i]);
     for (int32_t v = 0; v < embedding->mesh->n_vertices; v++)
         embedding->position[v] = deformed(map, embedding->position[v]);
+    return true;
 }

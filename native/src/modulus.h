@@ -8,8 +8,8 @@
 
 #include "embedding.h"
 
-/* Deforms tile, isometries of the copies and positions alike, keeping the tile's area. Does nothing to a tile that is
- * rigid. The energy must be measured anew. */
-void modulus_choose(orb_embedding *embedding);
+/* Deforms tile, isometries of the copies and positions alike, keeping the tile's area; true if it did. The copies must
+ * be placed, and must be placed anew afterwards. A rigid tile is left alone. */
+bool modulus_choose(orb_embedding *embedding);
 
 #endif

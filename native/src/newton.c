@@ -140,6 +140,9 @@ static void move_back(minimiser *work) {
     work->position = swap;
 }
 
+/* Whether the decrease that a step promises is below what differences of energies can show. */
+static bool is_noise(const minimiser *work, double slope) { return -slope < energy_noise * work->energy; }
+
 /* Halves the step until the energy falls enough; in the noise, the full step. Leaves the scale used in *taken, which
  * is 0 when no step helps. */
 static void line_search(minimiser *work, double slope, double *taken) {
@@ -147,7 +150,7 @@ static void line_search(minimiser *work, double slope, double *taken) {
     for (int32_t v = 0; v < work->problem->n_vertices; v++)
         longest = fmax(longest, cabs(work->step[v]));
     double cap = geometry_longest_step(work->problem->geometry), scale = longest > cap ? cap / longest : 1;
-    bool noise = -slope < energy_noise * before;
+    bool noise = is_noise(work, slope);
     *taken = 0;
     for (int halvings = 0; halvings < MOST_HALVINGS; halvings++, scale /= 2) {
         move(work, scale);
@@ -180,8 +183,8 @@ static void learn(minimiser *work, double taken) {
     lbfgs_remember(work->memory, work->step, work->old_gradient, work->gradient);
 }
 
-/* One step; *fresh says whether the factor was made at this very point. Sets *stuck when no step lowers the energy. */
-static orb_status advance(minimiser *work, bool fresh, bool *stuck, orb_error *error) {
+/* One step. Sets *stuck when none lowers the energy. */
+static orb_status advance(minimiser *work, bool *stuck, orb_error *error) {
     double slope, taken;
     orb_status status = find_step(work, &slope, error);
     if (status != ORB_OK)
@@ -189,14 +192,14 @@ static orb_status advance(minimiser *work, bool fresh, bool *stuck, orb_error *e
     *stuck = true;
     if (!(slope < 0)) /* NaN included */
         return ORB_OK;
+    int32_t *count = is_noise(work, slope) ? &work->minimum->refinements : &work->minimum->iterations;
     line_search(work, slope, &taken);
     if (taken == 0) {
         problem_place(work->problem, work->position, work->placed, work->turn);
         return ORB_OK;
     }
-    (void)fresh;
     learn(work, taken);
-    work->minimum->iterations++;
+    ++*count;
     *stuck = false;
     return ORB_OK;
 }
@@ -213,7 +216,7 @@ static orb_status iterate(minimiser *work, orb_monitor *monitor, orb_error *erro
         bool stuck = false, fresh = renew;
         double before = work->relative;
         if (status == ORB_OK)
-            status = advance(work, fresh, &stuck, error);
+            status = advance(work, &stuck, error);
         if (status != ORB_OK)
             return status;
         if (stuck && fresh)
@@ -243,6 +246,11 @@ orb_status newton_minimise(const orb_problem *problem, orb_system *system, const
     if (status != ORB_OK)
         goto done;
     evaluate(&work);
+    if (!isfinite(work.relative) || !isfinite(work.energy)) {
+        status = error_set(error, ORB_NOT_CONVERGED,
+                           "the first embedding is out of all proportion: vertices coincide or lie too far out");
+        goto done;
+    }
     if (system->n_free > 0)
         status = iterate(&work, monitor, error);
     if (status != ORB_OK)

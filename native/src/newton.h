@@ -11,7 +11,9 @@
 #include "system.h"
 
 typedef struct orb_minimum {
-    int32_t iterations, factorisations;
+    int32_t iterations;     /* steps that lowered the energy by more than its rounding */
+    int32_t refinements;    /* steps after those, for the last digits of the gradient */
+    int32_t factorisations;
     double energy, relative_gradient;
     int64_t factor_nonzeros;
     double seconds_assemble, seconds_analyze, seconds_factor, seconds_solve;

@@ -62,7 +62,7 @@ static void place_corners(const orb_geometry *geometry, int32_t k, const int32_t
     orb_isometry down = isometry_to_origin(geometry, point_of(CMPLX(0, -half_r)));
     for (int32_t i = 0; i < k; i++) {
         double half = pi / (2 * orders[i]), phi = angle_at_centre(K, s, half);
-        double sin_tau = sin_r / cos_r / tan(half), cos_tau = sqrt(fmax(0, 1 - K * sin_tau * sin_tau));
+        double sin_tau = sin_r / cos_r / tan(half), cos_tau = cos(phi) / sin(half); /* tau: corner to tangent point */
         double radius = sin_tau / sin(phi) / (1 + cos_r * cos_tau); /* tan_K of half the corner's distance */
         direction += phi;
         corners[i] = isometry_apply(geometry, down, point_of(radius * CMPLX(cos(direction), sin(direction))));
