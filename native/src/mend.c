@@ -3,9 +3,10 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "rounding.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -83,6 +84,7 @@ typedef struct mender {
     bool *marked;             /* [n_vertices] */
     int32_t *queue;           /* [n_vertices] vertices to move, by rings */
     int32_t n_queue;
+    double *backup;           /* [n_vertices*3] positions of the vertices on the queue */
     line *lines;              /* [valence] */
     plane_point *polygon[2];  /* [capacity] each */
     int32_t capacity;
@@ -232,14 +234,23 @@ static bool move_vertex(mender *m, int32_t vertex) {
 
 /* ------------------------------------------------------------------------------------------------ regions */
 
+/* Not positively oriented; or, `as_float`, not so once it is rounded. */
 static bool is_bad(const mender *m, int32_t triangle, bool as_float) {
+    const double *x[3];
     double corner[3][3];
-    for (int c = 0; c < 3; c++)
-        for (int k = 0; k < 3; k++) {
-            double x = m->positions[3 * (int64_t)m->mesh->triangles[3 * (int64_t)triangle + c] + k];
-            corner[c][k] = as_float ? (float)x : x;
-        }
-    return !mend_oriented(corner[0], corner[1], corner[2]);
+    for (int c = 0; c < 3; c++) {
+        x[c] = m->positions + 3 * (int64_t)m->mesh->triangles[3 * (int64_t)triangle + c];
+        for (int k = 0; k < 3 && as_float; k++)
+            corner[c][k] = rounding_to_float(x[c][k]);
+    }
+    return !mend_oriented(x[0], x[1], x[2]) || (as_float && !mend_oriented(corner[0], corner[1], corner[2]));
+}
+
+static int64_t count_bad(const mender *m, bool as_float) {
+    int64_t bad = 0;
+    for (int32_t t = 0; t < m->mesh->n_triangles; t++)
+        bad += is_bad(m, t, as_float);
+    return bad;
 }
 
 /* Puts the vertices of bad triangles on the queue, and `rings` rings of vertices around them; returns how many
@@ -285,6 +296,32 @@ static int32_t sweep(mender *m) {
     return moved;
 }
 
+/* Sends every vertex of the queue to the mean of its neighbours, over and over: with what lies around held, a crumpled
+ * patch becomes Tutte's embedding, as nearly as the sphere allows. If that does not leave fewer bad triangles (and
+ * none flipped, if none was), takes it back. */
+static bool smooth(mender *m, bool as_float, int64_t bad, int32_t rings) {
+    for (int32_t i = 0; i < m->n_queue; i++)
+        memcpy(m->backup + 3 * (int64_t)i, m->positions + 3 * (int64_t)m->queue[i], 3 * sizeof(double));
+    for (int32_t pass = 0; pass < 20 * (rings + 2); pass++)
+        for (int32_t i = 0; i < m->n_queue; i++) {
+            int32_t first = m->mesh->vertex_halfedge[m->queue[i]], h = first;
+            double mean[3] = {0, 0, 0};
+            do {
+                const double *a = m->positions + 3 * (int64_t)halfedge_to(m->mesh, h);
+                for (int k = 0; k < 3; k++)
+                    mean[k] += a[k];
+                h = next_around(m->mesh, h);
+            } while (h != first);
+            if (normalize(mean))
+                memcpy(m->positions + 3 * (int64_t)m->queue[i], mean, sizeof mean);
+        }
+    if (count_bad(m, as_float) < bad && (!as_float || count_bad(m, false) == 0))
+        return true;
+    for (int32_t i = 0; i < m->n_queue; i++)
+        memcpy(m->positions + 3 * (int64_t)m->queue[i], m->backup + 3 * (int64_t)i, 3 * sizeof(double));
+    return false;
+}
+
 /* Moves the vertices of bad triangles, and with every failure more rings around them, until none is bad or `budget`
  * moves are spent. Returns how many triangles are still bad. */
 static int64_t untangle(mender *m, bool as_float, int64_t budget) {
@@ -292,11 +329,17 @@ static int64_t untangle(mender *m, bool as_float, int64_t budget) {
     int64_t least = INT64_MAX, end = m->moves + budget;
     for (;;) {
         int64_t bad = collect(m, as_float, rings);
-        if (getenv("MEND_TRACE")) fprintf(stderr, "%d rings %d bad %ld queue %d moves %ld\n", as_float, rings, (long)bad, m->n_queue, (long)m->moves);
         if (bad == 0 || m->moves >= end)
             return bad;
-        rings = bad < least ? rings : rings + 1 + rings / 2;
-        least = bad < least ? bad : least;
+        if (bad < least - least / 8) {
+            least = bad;
+        } else if (smooth(m, as_float, bad, rings)) {
+            m->moves += m->n_queue;
+            least = INT64_MAX;
+            continue;
+        } else {
+            rings += 1 + rings / 2;
+        }
         for (int i = 0; i < 4 && sweep(m) > 0; i++)
             ;
     }
@@ -305,6 +348,7 @@ static int64_t untangle(mender *m, bool as_float, int64_t budget) {
 static void mender_free(mender *m) {
     free(m->marked);
     free(m->queue);
+    free(m->backup);
     free(m->lines);
     free(m->polygon[0]);
     free(m->polygon[1]);
@@ -326,10 +370,11 @@ static orb_status mender_create(const orb_mesh *mesh, double *positions, mender 
     m->capacity = 2 * (valence + 8);
     m->marked = malloc((size_t)mesh->n_vertices * sizeof *m->marked);
     m->queue = malloc((size_t)mesh->n_vertices * sizeof *m->queue);
+    m->backup = malloc((size_t)mesh->n_vertices * 3 * sizeof *m->backup);
     m->lines = malloc((size_t)valence * sizeof *m->lines);
     m->polygon[0] = malloc((size_t)m->capacity * sizeof(plane_point));
     m->polygon[1] = malloc((size_t)m->capacity * sizeof(plane_point));
-    if (!m->marked || !m->queue || !m->lines || !m->polygon[0] || !m->polygon[1])
+    if (!m->marked || !m->queue || !m->backup || !m->lines || !m->polygon[0] || !m->polygon[1])
         return error_memory(error);
     return ORB_OK;
 }
