@@ -48,6 +48,19 @@ static orb_status read_input(workshop *work, const orb_mesh_arrays *arrays, int3
     return weights_compute(embedding->mesh, request, embedding->weights, &embedding->report.clamped_weights, error);
 }
 
+/* The poles of a lune are antipodal: an edge between them would be no one geodesic. */
+static orb_status refuse_edge_between_poles(const orb_embedding *embedding, orb_error *error) {
+    const orb_mesh *mesh = embedding->mesh;
+    const int32_t *poles = embedding->cones;
+    for (int32_t h = 0; h < 3 * mesh->n_triangles && embedding->tile->rotates; h++)
+        if (halfedge_from(mesh, h) == poles[0] && halfedge_to(mesh, h) == poles[1])
+            return error_set_elements(error, ORB_BAD_CONE, ORB_VERTEX, poles, 2, 2,
+                                      "the cones %d and %d of %s are neighbours, and go to opposite poles: pick cones "
+                                      "that share no edge, or subdivide the mesh",
+                                      (int)poles[0], (int)poles[1], embedding->signature->text);
+    return ORB_OK;
+}
+
 static orb_status cut_and_glue(workshop *work, const int32_t *orders, orb_error *error) {
     orb_embedding *embedding = work->embedding;
     orb_report *report = &embedding->report;
@@ -59,6 +72,8 @@ static orb_status cut_and_glue(workshop *work, const int32_t *orders, orb_error 
         return status;
     start = monitor_clock();
     status = tile_create(embedding->signature->curvature, n_cones, orders, &embedding->tile, error);
+    if (status == ORB_OK)
+        status = refuse_edge_between_poles(embedding, error);
     if (status == ORB_OK)
         status = holonomy_create(embedding->mesh, work->disk, embedding->tile, &embedding->copies, error);
     if (status == ORB_OK)

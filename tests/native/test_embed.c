@@ -1,0 +1,312 @@
+/* The whole way: closed forms, independence of the cut, derivatives, errors. SPDX-License-Identifier: GPL-3.0-or-later */
+#include <complex.h>
+#include <stdlib.h>
+
+#include "check.h"
+#include "embedding.h"
+#include "meshes.h"
+#include "random.h"
+#include "system.h"
+
+static const double pi = 3.14159265358979323846;
+
+static orb_status embed(const sample_mesh *mesh, const char *signature, int32_t n_cones, const int32_t *cones,
+                        double clamp, orb_embedding **embedding, orb_error *error) {
+    orb_mesh_arrays arrays = sample_arrays(mesh);
+    orb_request request = orb_request_default();
+    request.signature = signature;
+    request.n_cones = n_cones;
+    request.cones = cones;
+    request.clamp = clamp;
+    return orb_embed(&arrays, &request, embedding, error);
+}
+
+/* Distinct random vertices. */
+static void pick_cones(random_state *state, int32_t n_vertices, int32_t k, int32_t *cones) {
+    for (int32_t i = 0; i < k; i++) {
+        bool taken = true;
+        while (taken) {
+            cones[i] = random_below(state, n_vertices);
+            taken = false;
+            for (int32_t j = 0; j < i; j++)
+                taken = taken || cones[j] == cones[i];
+        }
+    }
+}
+
+/* Largest relative difference between a triangle's edge lengths on the tile and `expected`, one per half-edge. */
+static double length_gap(const orb_embedding *embedding, const double *expected, double scale) {
+    double gap = 0;
+    for (int32_t h = 0; h < 3 * embedding->mesh->n_triangles; h++) {
+        orb_point p = embedding->placed[embedding->copies->triangles[h]];
+        orb_point q = embedding->placed[embedding->copies->triangles[halfedge_next(h)]];
+        double difference = fabs(geometry_distance(embedding->tile->geometry, p, q) - scale * expected[h]);
+        if (!(difference <= gap))
+            gap = difference;
+    }
+    return gap;
+}
+
+static double *lengths_of(const orb_embedding *embedding, bool on_tile) {
+    const orb_mesh *mesh = embedding->mesh;
+    double *lengths = malloc(3 * (size_t)mesh->n_triangles * sizeof *lengths);
+    for (int32_t h = 0; h < 3 * mesh->n_triangles; h++)
+        lengths[h] = on_tile ? geometry_distance(embedding->tile->geometry,
+                                                 embedding->placed[embedding->copies->triangles[h]],
+                                                 embedding->placed[embedding->copies->triangles[halfedge_next(h)]])
+                             : mesh_edge_length(mesh, h);
+    return lengths;
+}
+
+/* A flat pillow with its cones at its corners is already the orbifold. */
+static void check_pillow(sample_mesh mesh, const char *signature, int32_t k) {
+    int32_t cones[] = {0, 1, 2, 3};
+    orb_embedding *embedding = NULL;
+    orb_error error;
+    CHECK(embed(&mesh, signature, k, cones, 1e-13, &embedding, &error) == ORB_OK);
+    if (embedding) {
+        double area = 0, *lengths = lengths_of(embedding, false);
+        for (int32_t t = 0; t < mesh.n_triangles; t++)
+            area += mesh_triangle_area(embedding->mesh, t);
+        CHECK_NEAR(length_gap(embedding, lengths, 1 / sqrt(area)), 0, 1e-10);
+        CHECK_NEAR(embedding->report.quasi_conformal_max, 1, 1e-8);
+        CHECK_NEAR(embedding->report.energy, 1, 1e-9); /* half the Dirichlet energy of an isometry is its area */
+        CHECK(embedding->report.iterations == 1);
+        free(lengths);
+    } else {
+        printf("     %s: %s\n", signature, error.message);
+    }
+    orb_embedding_free(embedding);
+    sample_free(&mesh);
+}
+
+TEST(flat_pillows_reproduce_themselves) {
+    check_pillow(sample_pillow_triangle(pi / 4, pi / 4, 6), "442", 3);
+    check_pillow(sample_pillow_triangle(pi / 3, pi / 3, 6), "333", 3);
+    check_pillow(sample_pillow_triangle(pi / 6, pi / 3, 6), "632", 3);
+    check_pillow(sample_pillow_rectangle(1, 1, 7, 9), "2222", 4);
+    check_pillow(sample_pillow_rectangle(3, 1, 12, 5), "2222", 4);
+}
+
+/* The same weights on a stretched mesh: the shortest paths run elsewhere, but any two paths through three cones are
+ * homotopic, so the embedding is the same (2015, figure 4; 2017, figure 13). */
+static void check_two_cuts(const char *signature, double *energy) {
+    random_state state = {99};
+    sample_mesh mesh = sample_icosphere(4), stretched = sample_icosphere(4);
+    int32_t cones[3], different = 0;
+    pick_cones(&state, mesh.n_vertices, 3, cones);
+    for (int32_t v = 0; v < mesh.n_vertices; v++)
+        stretched.vertices[3 * v] *= 1 + 40 * fabs(stretched.vertices[3 * v + 1]);
+    orb_embedding *first = NULL, *second = NULL;
+    orb_error error;
+    CHECK(embed(&mesh, signature, 3, cones, 0.01, &first, &error) == ORB_OK);
+    REQUIRE(first != NULL);
+    orb_mesh_arrays arrays = sample_arrays(&stretched);
+    orb_request request = orb_request_default();
+    request.signature = signature;
+    request.n_cones = 3;
+    request.cones = cones;
+    request.weights = ORB_WEIGHTS_GIVEN;
+    request.edge_weights = first->edge_weights;
+    request.n_edge_weights = first->mesh->n_edges;
+    CHECK(orb_embed(&arrays, &request, &second, &error) == ORB_OK);
+    REQUIRE(second != NULL);
+    for (int32_t i = 0; i < first->n_seams; i++) {
+        bool shared = false;
+        for (int32_t j = 0; j < second->n_seams; j++)
+            shared = shared || (first->seams[2 * i] == second->seams[2 * j] &&
+                                first->seams[2 * i + 1] == second->seams[2 * j + 1]);
+        different += !shared;
+    }
+    CHECK(different > 3); /* or the test shows nothing */
+    double *lengths = lengths_of(first, true);
+    CHECK_NEAR(length_gap(second, lengths, 1), 0, 1e-9);
+    energy[0] = first->report.energy;
+    energy[1] = second->report.energy;
+    free(lengths);
+    orb_embedding_free(first);
+    orb_embedding_free(second);
+    sample_free(&mesh);
+    sample_free(&stretched);
+}
+
+TEST(homotopic_cuts_give_one_embedding) {
+    static const char *const all[] = {"442", "333", "632", "432", "532", "332", "22(5)", "237", "334"};
+    double energy[2];
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+        check_two_cuts(all[i], energy);
+}
+
+TEST(rigid_444_has_one_energy_from_two_cuts) {
+    double energy[2] = {0, 1};
+    check_two_cuts("444", energy);
+    CHECK_NEAR(energy[1] / energy[0], 1, 1e-10);
+}
+
+TEST(the_plane_takes_one_step) {
+    sample_mesh mesh = sample_icosphere(3);
+    static const struct { const char *signature; int32_t k; } all[] = {{"442", 3}, {"333", 3}, {"632", 3}, {"2222", 4}};
+    random_state state = {5};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        int32_t cones[4];
+        orb_embedding *embedding = NULL;
+        orb_error error;
+        pick_cones(&state, mesh.n_vertices, all[i].k, cones);
+        CHECK(embed(&mesh, all[i].signature, all[i].k, cones, 0.01, &embedding, &error) == ORB_OK);
+        CHECK(embedding && embedding->report.iterations == 1);
+        CHECK(embedding && embedding->report.relative_gradient < 1e-12);
+        orb_embedding_free(embedding);
+    }
+    sample_free(&mesh);
+}
+
+TEST(every_solid_and_every_number_of_cones) {
+    static const char *const all[] = {"22", "442", "2222", "22222", "222222", "2222222", "22222222"};
+    for (int solid = 0; solid < 3; solid++) {
+        sample_mesh mesh = solid == 0 ? sample_tetrahedron() : solid == 1 ? sample_octahedron() : sample_cube();
+        int32_t cones[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+        for (int32_t k = 2; k <= 8 && k <= mesh.n_vertices; k++) {
+            orb_embedding *embedding = NULL;
+            orb_error error;
+            orb_status status = embed(&mesh, all[k - 2], k, cones, 0.01, &embedding, &error);
+            bool poles_touch = k == 2 && solid != 1; /* vertices 0 and 1 share an edge, but for the octahedron */
+            CHECK(status == (poles_touch ? ORB_BAD_CONE : ORB_OK));
+            if (status != ORB_OK && !poles_touch)
+                printf("     solid %d with %d cones: %s\n", solid, (int)k, error.message);
+            orb_embedding_free(embedding);
+        }
+        sample_free(&mesh);
+    }
+}
+
+/* Gradient and Hessian of the assembled problem, against finite differences of its energy and gradient. */
+static void check_derivatives(const char *signature, int32_t k) {
+    random_state state = {7};
+    sample_mesh mesh = sample_icosphere(2);
+    int32_t cones[5];
+    pick_cones(&state, mesh.n_vertices, k, cones);
+    orb_embedding *embedding = NULL;
+    orb_problem *problem = NULL;
+    orb_system *system = NULL;
+    orb_error error;
+    REQUIRE(embed(&mesh, signature, k, cones, 0.01, &embedding, &error) == ORB_OK);
+    REQUIRE(problem_create(embedding->mesh, embedding->copies, embedding->tile, cones, embedding->weights, &problem,
+                           &error) == ORB_OK);
+    if (k == 2)
+        problem_hold_rotation(problem, 0, embedding->tile->corners[0]);
+    REQUIRE(system_create(problem, false, &system, &error) == ORB_OK);
+    size_t n = (size_t)mesh.n_vertices, copies = (size_t)embedding->copies->n_copies;
+    double complex *turn = malloc(copies * sizeof *turn), *along = calloc(n, sizeof *along);
+    double complex *gradient[3];
+    orb_point *moved = malloc(n * sizeof *moved), *placed = malloc(copies * sizeof *placed);
+    double *scale = malloc(n * sizeof *scale), *rows = malloc(2 * n * sizeof *rows), relative, energy[3];
+    double complex *frames = calloc(n, sizeof *frames);
+    for (size_t v = 0; v < n; v++) { /* start away from the minimum */
+        double complex push = 0.05 * (random_unit(&state) - 0.5 + I * (random_unit(&state) - 0.5));
+        if (problem->freedom[v] == 2)
+            embedding->position[v] = geometry_exp(problem->geometry, embedding->position[v], push);
+        along[v] = random_unit(&state) - 0.5 + I * (random_unit(&state) - 0.5);
+        if (problem->freedom[v] == 1)
+            along[v] = problem_direction(problem, embedding->position[v]);
+        if (problem->freedom[v] == 0)
+            along[v] = 0;
+    }
+    double step = 1e-5;
+    for (int i = 0; i < 3; i++) {
+        gradient[i] = malloc(n * sizeof **gradient);
+        for (size_t v = 0; v < n; v++)
+            moved[v] = geometry_exp(problem->geometry, embedding->position[v], (i - 1) * step * along[v]);
+        problem_place(problem, moved, placed, turn);
+        energy[i] = problem_energy(problem, placed, turn, moved, gradient[i], scale, &relative);
+        if (i != 1)
+            for (size_t v = 0; v < n; v++) /* back into the frame at the middle */
+                gradient[i][v] *= geometry_transport(problem->geometry, moved[v], embedding->position[v]);
+    }
+    double slope = 0, curvature = 0, expected = 0;
+    for (size_t v = 0; v < n; v++) {
+        slope += creal(conj(along[v]) * gradient[1][v]);
+        curvature += creal(conj(along[v]) * (gradient[2][v] - gradient[0][v])) / (2 * step);
+    }
+    CHECK_NEAR((energy[2] - energy[0]) / (2 * step), slope, 1e-6 * (1 + fabs(slope)));
+    problem_place(problem, embedding->position, placed, turn);
+    system_assemble(system, problem, embedding->position, placed, turn, HESSIAN_EXACT);
+    system_gather(system, problem, embedding->position, along, rows);
+    for (int64_t j = 0; j < system->pattern.n; j++)
+        for (int64_t e = system->pattern.column[j]; e < system->pattern.column[j + 1]; e++)
+            expected += (system->pattern.row[e] == j ? 1 : 2) * rows[system->pattern.row[e]] * system->values[e] * rows[j];
+    CHECK_NEAR(curvature, expected, 1e-5 * (1 + fabs(expected)));
+    for (int i = 0; i < 3; i++)
+        free(gradient[i]);
+    free(turn), free(along), free(moved), free(placed), free(scale), free(rows), free(frames);
+    system_free(system);
+    problem_free(problem);
+    orb_embedding_free(embedding);
+    sample_free(&mesh);
+}
+
+TEST(assembled_derivatives_against_finite_differences) {
+    check_derivatives("442", 3);
+    check_derivatives("432", 3);
+    check_derivatives("237", 3);
+    check_derivatives("22222", 5);
+    check_derivatives("55", 2);
+}
+
+TEST(isolated_vertices_are_left_out) {
+    sample_mesh mesh = sample_icosphere(2), padded = sample_new(mesh.n_vertices + 2, mesh.n_triangles);
+    memcpy(padded.vertices, mesh.vertices, 3 * (size_t)mesh.n_vertices * sizeof(double));
+    memcpy(padded.triangles, mesh.triangles, 3 * (size_t)mesh.n_triangles * sizeof(int32_t));
+    int32_t cones[] = {0, 20, 40}, isolated[] = {0, 20, mesh.n_vertices};
+    orb_embedding *embedding = NULL;
+    orb_error error;
+    CHECK(embed(&padded, "432", 3, cones, 0.01, &embedding, &error) == ORB_OK);
+    orb_embedding_free(embedding);
+    CHECK(embed(&padded, "432", 3, isolated, 0.01, &embedding, &error) == ORB_BAD_CONE);
+    CHECK(error.n_elements == 1 && error.elements[0] == mesh.n_vertices);
+    CHECK(embedding == NULL);
+    sample_free(&mesh);
+    sample_free(&padded);
+}
+
+static bool refuse(const char *stage, double fraction, void *user) {
+    (void)stage;
+    return fraction < *(double *)user;
+}
+
+TEST(a_cancelled_call_leaves_nothing) {
+    sample_mesh mesh = sample_icosphere(3);
+    orb_mesh_arrays arrays = sample_arrays(&mesh);
+    int32_t cones[] = {0, 20, 40};
+    for (double at = 0; at < 0.99; at += 0.05) {
+        orb_request request = orb_request_default();
+        request.signature = "237";
+        request.n_cones = 3;
+        request.cones = cones;
+        request.progress = refuse;
+        request.user = &at;
+        orb_embedding *embedding = NULL;
+        orb_error error;
+        CHECK(orb_embed(&arrays, &request, &embedding, &error) == ORB_CANCELLED);
+        CHECK(embedding == NULL && error.status == ORB_CANCELLED);
+    }
+    sample_free(&mesh);
+}
+
+TEST(the_callers_mistakes) {
+    sample_mesh mesh = sample_icosphere(2);
+    orb_embedding *embedding = NULL;
+    orb_error error;
+    int32_t cones[] = {0, 20, 20, 1000};
+    CHECK(embed(&mesh, "432", 3, cones, 0.01, &embedding, &error) == ORB_BAD_CONE);
+    CHECK(error.elements[0] == 20);
+    CHECK(embed(&mesh, "22", 2, cones + 2, 0.01, &embedding, &error) == ORB_BAD_CONE);
+    CHECK(error.elements[0] == 1000);
+    CHECK(embed(&mesh, "43", 2, cones, 0.01, &embedding, &error) == ORB_BAD_ORBIFOLD);
+    CHECK(embed(&mesh, "432", 2, cones, 0.01, &embedding, &error) == ORB_CONE_COUNT);
+    CHECK(embed(&mesh, NULL, 2, cones, 0.01, &embedding, &error) == ORB_BAD_ARGUMENT);
+    CHECK(embed(&mesh, "22", 2, cones, 0, &embedding, &error) == ORB_BAD_ARGUMENT);
+    CHECK(embed(&mesh, "22", 2, cones, -1, &embedding, &error) == ORB_BAD_ARGUMENT);
+    CHECK(orb_embed(NULL, NULL, &embedding, &error) == ORB_BAD_ARGUMENT);
+    CHECK(orb_embed(NULL, NULL, NULL, NULL) == ORB_BAD_ARGUMENT);
+    sample_free(&mesh);
+}
