@@ -13,16 +13,17 @@ from . import blender_mesh, pattern
 from .core import Result
 
 IMAGE_SIZE = 1024
+HYPERBOLIC_SIZE = 2048  # the layout takes but a part of the disk
 
 
 def make_material(
-    obj: bpy.types.Object, result: Result, chart: Optional[str] = None, size: int = IMAGE_SIZE
+    obj: bpy.types.Object, result: Result, chart: Optional[str] = None, size: Optional[int] = None
 ) -> bpy.types.Material:
     """A new material for the layout that `result` has in `chart` (None: the one of `result.uv`), its image packed
     into the file. An earlier one of this object is replaced."""
     chart = chart or result.chart
     name = f"Orbifold {obj.name}"
-    picture = pattern.picture(result, chart, result.uv_chart(chart), size)
+    size = size or (HYPERBOLIC_SIZE if result.geometry == "hyperbolic" else IMAGE_SIZE)
     material = bpy.data.materials.get(name) or bpy.data.materials.new(name)
     blender_mesh.enable_nodes(material)
     tree = material.node_tree
@@ -30,15 +31,11 @@ def make_material(
     output = _node(tree, "ShaderNodeOutputMaterial", 600)
     shader = _node(tree, "ShaderNodeBsdfPrincipled", 300)
     texture = _node(tree, "ShaderNodeTexImage", 0)
-    frame = _node(tree, "ShaderNodeMapping", -200)
-    coordinates = _node(tree, "ShaderNodeUVMap", -400)
+    coordinates = _node(tree, "ShaderNodeUVMap", -200)
     coordinates.uv_map = blender_mesh.UV_MAP
-    texture.image = _image(name, picture.pixels)
-    frame.inputs["Scale"].default_value[:2] = 1 / (picture.high - picture.low)
-    frame.inputs["Location"].default_value[:2] = -picture.low / (picture.high - picture.low)
+    texture.image = _image(name, pattern.image(result, chart, result.uv_chart(chart), size))
     shader.inputs["Roughness"].default_value = 0.6
-    tree.links.new(coordinates.outputs["UV"], frame.inputs["Vector"])
-    tree.links.new(frame.outputs["Vector"], texture.inputs["Vector"])
+    tree.links.new(coordinates.outputs["UV"], texture.inputs["Vector"])
     tree.links.new(texture.outputs["Color"], shader.inputs["Base Color"])
     tree.links.new(shader.outputs["BSDF"], output.inputs["Surface"])
     return material

@@ -12,7 +12,6 @@ the chord.
 from __future__ import annotations
 
 import colorsys
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -27,40 +26,32 @@ TAIL = 9.0  # orbit points farther than the nearest by this many softnesses are 
 BACKGROUND = (0.5, 0.5, 0.5)
 
 
-@dataclass(frozen=True)
-class Picture:
-    """`pixels` (size, size, 4) float32, first row at the bottom, cover the texture coordinates from low to high."""
-
-    pixels: np.ndarray
-    low: np.ndarray  # (2,)
-    high: np.ndarray
-
-
-def picture(result: Result, chart_name: str, uv: np.ndarray, size: int = 1024) -> Picture:
-    """The pattern for the layout `uv` (m, 3, 2): one period where the layout repeats, else its bounding box."""
+def image(result: Result, chart_name: str, uv: np.ndarray, size: int = 1024) -> np.ndarray:
+    """(size, size, 4) float32, first row at the bottom: the pattern on the unit square of the layout `uv` (m, 3, 2).
+    Where the layout repeats, so does the image; elsewhere it is drawn about the layout only."""
     corners = result.embedding[result.cut_triangles]
     chart = chart_of(chart_name, result.geometry, corners, uv)
     low, high = np.zeros(2), np.ones(2)
     if chart_name != "periodic":
         low, high = uv.reshape(-1, 2).min(0), uv.reshape(-1, 2).max(0)
-        margin = 0.01 * (high - low)
-        low, high = low - margin, high + margin
     curvature = CURVATURE[result.geometry]
     orbits = cone_orbits(result, chart, corners)
     spacing = np.sqrt(_tile_area(result, corners)) / RINGS
     pixels = np.ones((size, size, 4), np.float32)
     pixels[..., :3] = BACKGROUND
+    first, last = np.floor(low * size - BLOCK).astype(int), np.ceil(high * size + BLOCK).astype(int)
     for row in range(0, size, BLOCK):
         for column in range(0, size, BLOCK):
+            if not (first[1] <= row + BLOCK and row <= last[1] and first[0] <= column + BLOCK and column <= last[0]):
+                continue
             y, x = np.mgrid[row : min(row + BLOCK, size), column : min(column + BLOCK, size)]
-            at = low + (np.stack([x.ravel(), y.ravel()], -1) + 0.5) / size * (high - low)
-            points = chart.to_point(at)
+            points = chart.to_point((np.stack([x.ravel(), y.ravel()], -1) + 0.5) / size)
             inside = np.isfinite(points).all(-1)
             if inside.any():
                 colours = np.tile(np.float32(BACKGROUND), (len(points), 1))
                 colours[inside] = colour_at(points[inside], orbits, curvature, spacing)
                 pixels[row : row + BLOCK, column : column + BLOCK, :3] = colours.reshape(*x.shape, 3)
-    return Picture(pixels, low, high)
+    return pixels
 
 
 def colour_at(points: np.ndarray, orbits: list[np.ndarray], curvature: int, spacing: float) -> np.ndarray:

@@ -45,9 +45,9 @@ class MESH_UL_orbifold_cones(bpy.types.UIList):
 
     def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_property, index=0) -> None:
         row = layout.row(align=True)
-        split = row.split(factor=0.5)
-        split.label(text=f"{index + 1}.  Vertex {item.vertex}")
-        split.prop(item, "order", text="Order", emboss=True)
+        split = row.split(factor=0.6)
+        split.label(text=f"{index + 1}.  {item.vertex}", icon="VERTEXSEL")
+        split.prop(item, "order", text="")
         jump = row.operator("mesh.orbifold_jump_to_cone", text="", icon="RESTRICT_SELECT_OFF", emboss=False)
         jump.index = index
 
@@ -75,24 +75,27 @@ class OrbifoldPanel:
 
 
 def draw_cones(layout: bpy.types.UILayout, settings) -> None:
+    layout.operator("mesh.orbifold_add_cones", icon="ADD")
+    titles = layout.split(factor=0.5)
+    titles.label(text="Cone, Vertex")
+    titles.label(text="Order")
     row = layout.row()
     row.template_list(MESH_UL_orbifold_cones.bl_idname, "", settings, "cones", settings, "active_cone", rows=4)
     side = row.column(align=True)
-    side.operator("mesh.orbifold_add_cones", text="", icon="ADD")
     side.operator("mesh.orbifold_remove_cone", text="", icon="REMOVE").index = -1
     side.separator()
     side.operator("mesh.orbifold_move_cone", text="", icon="TRIA_UP").direction = "UP"
     side.operator("mesh.orbifold_move_cone", text="", icon="TRIA_DOWN").direction = "DOWN"
     side.separator()
     side.operator("mesh.orbifold_clear_cones", text="", icon="X")
-    layout.operator("mesh.orbifold_add_cones", icon="ADD")
 
 
 def draw_signature(layout: bpy.types.UILayout, settings, width: float) -> None:
     state = signature_state(settings.signature, len(settings.cones))
+    layout.label(text="Signature")
     row = layout.row(align=True)
     row.alert = bool(settings.signature) and not state.good
-    row.prop(settings, "signature")
+    row.prop(settings, "signature", text="")
     row.menu(MESH_MT_orbifold_signatures.bl_idname, text="", icon="DOWNARROW_HLT")
     column = layout.column(align=True)
     icon = "CHECKMARK" if state.good else "INFO"
