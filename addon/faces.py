@@ -19,6 +19,7 @@ from . import charts
 from .blender_mesh import MeshArrays
 from .core import Result
 
+FITTED = ("conformal", "stereographic")  # charts that fill the unit square
 SAME = 1e-7  # two placings of an edge are the same below this part of its length; neighbouring copies differ by far more
 
 
@@ -26,6 +27,7 @@ SAME = 1e-7  # two placings of an edge are the same below this part of its lengt
 class FaceLayout:
     """A layout in which no seam crosses a face."""
 
+    chart: str
     uv: np.ndarray  # (m, 3, 2) per triangle corner
     embedding: np.ndarray  # (m, 3, 3) the corners' points on the plane, sphere or hyperboloid
     seams: np.ndarray  # (k, 2) vertex pairs
@@ -37,7 +39,7 @@ def layout_of(result: Result, arrays: MeshArrays, chart: str) -> FaceLayout:
     placed = result.embedding[result.cut_triangles]
     groups = _cut_faces(result.seams, arrays)
     if not groups:
-        return FaceLayout(uv, placed, result.seams, 0)
+        return FaceLayout(chart, uv, placed, result.seams, 0)
     curvature = charts.CURVATURE[result.geometry]
     z = charts.to_complex(placed + result.embedding_low[result.cut_triangles], curvature)
     moved: list[int] = []
@@ -54,7 +56,13 @@ def layout_of(result: Result, arrays: MeshArrays, chart: str) -> FaceLayout:
     )
     for corners in (uv, placed):
         corners[touched] = _first_of_each(arrays.loops[touched], corners[touched])
-    return FaceLayout(uv, placed, seams, len(groups))
+    return FaceLayout(chart, _fitted(uv) if chart in FITTED else uv, placed, seams, len(groups))
+
+
+def _fitted(uv: np.ndarray) -> np.ndarray:
+    """Into the unit square, filled in one direction, as native/src/layout.c does: a moved triangle may stick out."""
+    low, high = uv.reshape(-1, 2).min(0), uv.reshape(-1, 2).max(0)
+    return np.clip(0.5 + (uv - (low + high) / 2) / (high - low).max(), 0, 1)
 
 
 # ------------------------------------------------------------------------------------------------- geometry

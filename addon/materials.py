@@ -11,17 +11,19 @@ import numpy as np
 
 from . import blender_mesh, pattern
 from .core import Result
+from .faces import FaceLayout
 
 IMAGE_SIZE = 1024
 HYPERBOLIC_SIZE = 2048  # the layout takes but a part of the disk
 
 
 def make_material(
-    obj: bpy.types.Object, result: Result, chart: Optional[str] = None, size: Optional[int] = None
+    obj: bpy.types.Object, result: Result, layout: Optional[FaceLayout] = None, size: Optional[int] = None
 ) -> bpy.types.Material:
-    """A new material for the layout that `result` has in `chart` (None: the one of `result.uv`), its image packed
-    into the file. An earlier one of this object is replaced."""
-    chart = chart or result.chart
+    """A material for the layout that was written to the object (None: `result.uv` as it is), its image packed into
+    the file. An earlier one of this object is replaced."""
+    if layout is None:
+        layout = FaceLayout(result.chart, result.uv, result.embedding[result.cut_triangles], result.seams, 0)
     name = f"Orbifold {obj.name}"
     size = size or (HYPERBOLIC_SIZE if result.geometry == "hyperbolic" else IMAGE_SIZE)
     material = bpy.data.materials.get(name) or bpy.data.materials.new(name)
@@ -33,7 +35,8 @@ def make_material(
     texture = _node(tree, "ShaderNodeTexImage", 0)
     coordinates = _node(tree, "ShaderNodeUVMap", -200)
     coordinates.uv_map = blender_mesh.UV_MAP
-    texture.image = _image(name, pattern.image(result, chart, result.uv_chart(chart), size))
+    texture.extension = "REPEAT" if layout.chart == "periodic" else "EXTEND"
+    texture.image = _image(name, pattern.image(result, layout, size))
     shader.inputs["Roughness"].default_value = 0.6
     tree.links.new(coordinates.outputs["UV"], texture.inputs["Vector"])
     tree.links.new(texture.outputs["Color"], shader.inputs["Base Color"])

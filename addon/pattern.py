@@ -17,6 +17,7 @@ import numpy as np
 
 from .charts import CURVATURE, Chart, chart_of
 from .core import Result
+from .faces import FaceLayout
 
 BLOCK = 32  # pixels; the orbit points that matter are looked up once for each block
 MAX_ORBIT = 40000
@@ -26,14 +27,14 @@ TAIL = 9.0  # orbit points farther than the nearest by this many softnesses are 
 BACKGROUND = (0.5, 0.5, 0.5)
 
 
-def image(result: Result, chart_name: str, uv: np.ndarray, size: int = 1024) -> np.ndarray:
-    """(size, size, 4) float32, first row at the bottom: the pattern on the unit square of the layout `uv` (m, 3, 2).
-    Where the layout repeats, so does the image; elsewhere it is drawn about the layout only."""
-    corners = result.embedding[result.cut_triangles]
-    chart = chart_of(chart_name, result.geometry, corners, uv)
+def image(result: Result, layout: FaceLayout, size: int = 1024) -> np.ndarray:
+    """(size, size, 4) float32, first row at the bottom: the pattern on the unit square of the layout. Where that
+    repeats, so does the image; elsewhere it is drawn about the layout only."""
+    corners = layout.embedding
+    chart = chart_of(layout.chart, result.geometry, corners, layout.uv)
     low, high = np.zeros(2), np.ones(2)
-    if chart_name != "periodic":
-        low, high = uv.reshape(-1, 2).min(0), uv.reshape(-1, 2).max(0)
+    if layout.chart != "periodic":
+        low, high = layout.uv.reshape(-1, 2).min(0), layout.uv.reshape(-1, 2).max(0)
     curvature = CURVATURE[result.geometry]
     orbits = cone_orbits(result, chart, corners)
     spacing = np.sqrt(_tile_area(result, corners)) / RINGS

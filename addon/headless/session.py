@@ -91,7 +91,7 @@ def _dress(obj: bpy.types.Object, arrays: blender_mesh.MeshArrays, result: core.
     blender_mesh.mark_seams(mesh, layout.seams)
     if result.geometry == "spherical":
         blender_mesh.write_shape_key(obj, placed_sphere(result.whole_sphere(), arrays))
-    material = materials.make_material(obj, result)
+    material = materials.make_material(obj, result, layout)
     mesh.materials.clear()
     materials.assign(obj, material)
     mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), bool))

@@ -110,7 +110,7 @@ class UV_OT_orbifold_unwrap(EmbeddingOperator, bpy.types.Operator):
         if key is not None:
             blender_mesh.write_shape_key(obj, key)
         if self.pattern:
-            materials.assign(obj, materials.make_material(obj, result, getattr(self, f"chart_{result.geometry}")))
+            materials.assign(obj, materials.make_material(obj, result, layout))
         distortion = result.report["distortion"]["quasi_conformal_mean"]
         return (
             f"Orbifold {result.signature} ({result.geometry}): a bijection, certified; "
