@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An image in the layout's own coordinates whose pattern the orbifold's group leaves as it is; no bpy.
+"""An image in the layout's own coordinates whose pattern the orbifold's group leaves as it is.
 
 The colour of a point follows from its distances to the images of the cones under the group. Points that the group
 carries to one another, so the two sides of every seam too, have the same distances: seen on the mesh, the pattern

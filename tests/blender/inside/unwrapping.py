@@ -104,8 +104,9 @@ def check_quads_and_ngons_are_kept():
         assert (orientations(uv) > 0).all(), chart
         layout = faces.layout_of(result, arrays, chart)
         through += layout.mended
-        assert np.array_equal(uv, layout.uv.astype(np.float32)), chart  # the triangles of a face agree at its corners
+        assert np.abs(uv - layout.uv).max() < 2e-7, chart  # so the triangles of a face agree at its corners
         assert seam_pairs(obj) == {tuple(sorted(pair)) for pair in layout.seams.tolist()}, chart
+        assert chart == "periodic" or (uv.min() >= 0 and uv.max() <= 1), chart
     assert through > 0, "the cut ran through no face: this check has shown nothing"
 
 
