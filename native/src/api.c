@@ -92,7 +92,7 @@ static orb_status set_up_system(workshop *work, orb_error *error) {
         problem_hold_rotation(work->problem, middle < work->embedding->mesh->n_vertices ? middle : 0,
                               tile->corners[0]);
     }
-    orb_status status = system_create(work->problem, !tile->rotates, &work->system, error);
+    orb_status status = system_create(work->problem, true, &work->system, error);
     if (status != ORB_OK)
         return status;
     double built = monitor_clock();
@@ -149,13 +149,27 @@ done:
     return status;
 }
 
+/* The fast way, and where it stagnates, the exact Hessian from the same start. */
+static orb_status find_minimum(workshop *work, orb_minimum *minimum, orb_error *error) {
+    orb_point *position = work->embedding->position;
+    orb_status status =
+        newton_minimise(work->problem, work->system, work->order, position, minimum, &work->monitor, error);
+    if (status != ORB_NOT_CONVERGED)
+        return status;
+    system_free(work->system);
+    work->system = NULL;
+    status = system_create(work->problem, false, &work->system, error);
+    if (status == ORB_OK)
+        status = newton_minimise(work->problem, work->system, work->order, position, minimum, &work->monitor, error);
+    return status;
+}
+
 /* The minimiser, the affine modulus, and the energy of what came out. */
 static orb_status minimise(workshop *work, orb_error *error) {
     orb_embedding *embedding = work->embedding;
     orb_report *report = &embedding->report;
     orb_minimum minimum;
-    orb_status status = newton_minimise(work->problem, work->system, work->order, embedding->position, &minimum,
-                                        &work->monitor, error);
+    orb_status status = find_minimum(work, &minimum, error);
     if (status != ORB_OK)
         return status;
     double complex *turn = malloc(((size_t)embedding->copies->n_copies + 1) * sizeof *turn);

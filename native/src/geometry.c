@@ -61,6 +61,11 @@ static double conformal_factor(const orb_geometry *geometry, orb_point p) {
 orb_point point_of(double complex z) { return (orb_point){z, 0}; }
 orb_point point_conjugate(orb_point p) { return (orb_point){conj(p.z), conj(p.low)}; }
 
+orb_point point_linear(double complex a, double complex b, orb_point p) {
+    ddc z = wide(p);
+    return narrow(ddc_add(ddc_multiply(wide(point_of(a)), z), ddc_multiply(wide(point_of(b)), ddc_conjugate(z))));
+}
+
 double complex geometry_toward(const orb_geometry *geometry, orb_point p, orb_point q) {
     double complex difference = (q.z - p.z) + (q.low - p.low);
     return difference / (conformal_factor(geometry, p) + geometry->K * conj(p.z) * difference);

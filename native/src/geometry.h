@@ -47,6 +47,8 @@ double geometry_atan(const orb_geometry *geometry, double t);
 /* --- points --- */
 orb_point point_of(double complex z);
 orb_point point_conjugate(orb_point p);
+/* a p + b conj(p), to full precision */
+orb_point point_linear(double complex a, double complex b, orb_point p);
 
 /* t: where q goes when p is moved to the origin; direction from p to q, |t| = tan_K(distance / 2). */
 double complex geometry_toward(const orb_geometry *geometry, orb_point p, orb_point q);

@@ -10,15 +10,14 @@ typedef struct linear {
     double complex a, b;
 } linear;
 
-static orb_point deformed(linear map, orb_point p) {
-    return (orb_point){map.a * p.z + map.b * conj(p.z), map.a * p.low + map.b * conj(p.low)};
-}
+static orb_point deformed(linear map, orb_point p) { return point_linear(map.a, map.b, p); }
 
-/* An isometry of the plane z -> (a z + b) / conj(a) whose linear part is +1 or -1: its translation is deformed. */
-static orb_isometry deformed_isometry(linear map, orb_isometry h) {
-    orb_point shift = deformed(map, point_of(h.b.z / conj(h.a.z)));
-    h.b = point_of(shift.z * conj(h.a.z));
-    return h;
+/* An isometry of the plane whose linear part is +1 or -1: that commutes with the map, so only its translation, the
+ * image of the origin, is deformed. */
+static orb_isometry deformed_isometry(const orb_geometry *geometry, linear map, orb_isometry h) {
+    orb_point shift = deformed(map, isometry_apply(geometry, h, point_of(0)));
+    orb_isometry turn = {h.a, point_of(0)};
+    return isometry_compose(geometry, isometry_inverse(isometry_to_origin(geometry, shift)), turn);
 }
 
 /* The eigenvector of eq. 13 in closed form. With M the sum of area J J', m = trace(M) / 2, A the image's area and
@@ -44,11 +43,11 @@ bool modulus_choose(orb_embedding *embedding) {
     for (int32_t j = 0; j < 2 * tile->n_cones - 2; j++)
         tile->corners[j] = deformed(map, tile->corners[j]);
     for (int32_t s = 0; s + 1 < tile->n_cones; s++) {
-        tile->pairings[s + 1] = deformed_isometry(map, tile->pairings[s + 1]);
+        tile->pairings[s + 1] = deformed_isometry(tile->geometry, map, tile->pairings[s + 1]);
         tile->sides[s] = map.a * tile->sides[s] + map.b * conj(tile->sides[s]);
     }
     for (int32_t i = 0; i < copies->n_isometries; i++)
-        copies->isometries[i] = deformed_isometry(map, copies->isometries[i]);
+        copies->isometries[i] = deformed_isometry(tile->geometry, map, copies->isometries[i]);
     for (int32_t v = 0; v < embedding->mesh->n_vertices; v++)
         embedding->position[v] = deformed(map, embedding->position[v]);
     return true;

@@ -20,6 +20,8 @@ typedef struct minimiser {
     orb_minimum *minimum;
     orb_cholesky *cholesky;
     orb_lbfgs *memory;           /* NULL for real systems */
+    int32_t held;                /* the vertex of freedom 1 of a complex system; -1 if there is none */
+    double complex *held_column; /* [n_vertices] the held vertex's column of the inverse */
     orb_point *position, *trial; /* [n_vertices] */
     orb_point *placed;           /* [n_copies] */
     double complex *turn;        /* [n_copies] */
@@ -37,6 +39,7 @@ static void minimiser_free(minimiser *work) {
     free(work->old_gradient);
     free(work->step);
     free(work->transport);
+    free(work->held_column);
     free(work->scale);
     free(work->rows);
     lbfgs_free(work->memory);
@@ -57,7 +60,17 @@ static orb_status minimiser_allocate(minimiser *work, orb_error *error) {
     if (!work->trial || !work->placed || !work->turn || !work->gradient || !work->old_gradient || !work->step ||
         !work->transport || !work->scale || !work->rows)
         return error_memory(error);
-    return work->system->is_complex ? lbfgs_create(work->problem->n_vertices, &work->memory, error) : ORB_OK;
+    work->held = -1;
+    if (!work->system->is_complex)
+        return ORB_OK;
+    for (int32_t v = 0; v < work->problem->n_vertices && work->held < 0; v++)
+        work->held = work->problem->freedom[v] == 1 ? v : -1;
+    if (work->held >= 0) {
+        work->held_column = malloc(n * sizeof *work->held_column);
+        if (!work->held_column)
+            return error_memory(error);
+    }
+    return lbfgs_create(work->problem->n_vertices, &work->memory, error);
 }
 
 static orb_status analyze(minimiser *work, const int32_t *order, orb_error *error) {
@@ -82,6 +95,15 @@ static void evaluate(minimiser *work) {
     work->minimum->seconds_assemble += monitor_clock() - start;
 }
 
+/* vectors = inverse of the factored matrix times vectors. */
+static orb_status apply_inverse(minimiser *work, double complex *vectors, orb_error *error) {
+    system_gather(work->system, work->problem, work->position, vectors, work->rows);
+    orb_status status = cholesky_solve(work->cholesky, work->rows, 1, work->rows, error);
+    if (status == ORB_OK)
+        system_scatter(work->system, work->problem, work->position, work->rows, vectors);
+    return status;
+}
+
 /* Factors the Hessian at the current position; where it is indefinite, its positive part. */
 static orb_status factor(minimiser *work, orb_error *error) {
     bool positive = false;
@@ -101,7 +123,22 @@ static orb_status factor(minimiser *work, orb_error *error) {
     if (!positive)
         return error_set(error, ORB_NOT_CONVERGED,
                          "the Hessian is not positive definite: weights or coordinates are of too different size");
-    return ORB_OK;
+    if (work->held < 0)
+        return ORB_OK;
+    memset(work->held_column, 0, (size_t)work->problem->n_vertices * sizeof *work->held_column);
+    work->held_column[work->held] = 1;
+    return apply_inverse(work, work->held_column, error);
+}
+
+/* A complex system knows no vertex that moves along a line: the move across it, i e with e the line's direction, is
+ * taken out by a Lagrange multiplier. The inverse is complex-linear, so one column of it serves every direction. */
+static void hold(minimiser *work, double complex *vectors) {
+    if (work->held < 0)
+        return;
+    double complex across = CMPLX(0, 1) * problem_direction(work->problem, work->position[work->held]);
+    double multiplier = creal(conj(across) * vectors[work->held]) / creal(work->held_column[work->held]);
+    for (int32_t v = 0; v < work->problem->n_vertices; v++)
+        vectors[v] -= multiplier * across * work->held_column[v];
 }
 
 /* work->step = -(inverse Hessian) gradient; *slope = <gradient, step>. */
@@ -112,11 +149,10 @@ static orb_status find_step(minimiser *work, double *slope, orb_error *error) {
         work->step[v] = -work->gradient[v];
     if (work->memory)
         lbfgs_before(work->memory, work->step);
-    system_gather(work->system, work->problem, work->position, work->step, work->rows);
-    orb_status status = cholesky_solve(work->cholesky, work->rows, 1, work->rows, error);
+    orb_status status = apply_inverse(work, work->step, error);
     if (status != ORB_OK)
         return status;
-    system_scatter(work->system, work->problem, work->position, work->rows, work->step);
+    hold(work, work->step);
     if (work->memory)
         lbfgs_after(work->memory, work->step);
     *slope = lbfgs_dot(n, work->gradient, work->step);

@@ -1,9 +1,10 @@
 /* Minimises the energy of a problem. SPDX-License-Identifier: GPL-3.0-or-later
  *
  * One loop for the three geometries. A step solves with a Cholesky factor of the Hessian and is taken along geodesics,
- * shortened until the energy falls. Where every vertex is free, the factor is that of the Hessian's complex-linear
- * part (system.h), kept over many steps, and limited-memory BFGS supplies the rest; in the plane that part is the whole
- * Hessian and the first step is exact. Where a vertex slides, the exact real Hessian is factored at each step. */
+ * shortened until the energy falls. With a complex system the factor is that of the Hessian's complex-linear part
+ * (system.h), kept over many steps, and limited-memory BFGS supplies the rest; in the plane that part is the whole
+ * Hessian and the first step is exact. With a real system the exact Hessian is factored at each step: slower, and what
+ * the first is checked against. */
 #ifndef ORB_NEWTON_H
 #define ORB_NEWTON_H
 
@@ -20,7 +21,7 @@ typedef struct orb_minimum {
 } orb_minimum;
 
 /* `position` [n_vertices] holds the start and receives the minimiser; fixed vertices stay. `order` [system->n_free]
- * is an ordering of the system's blocks; a real system means the exact Hessian at every step.
+ * is an ordering of the system's blocks. On failure `position` is as it was.
  * Errors: ORB_NOT_CONVERGED, ORB_CANCELLED, and the linear solver's. */
 orb_status newton_minimise(const orb_problem *problem, orb_system *system, const int32_t *order, orb_point *position,
                            orb_minimum *minimum, orb_monitor *monitor, orb_error *error);
