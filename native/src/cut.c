@@ -8,137 +8,35 @@
 #include <string.h>
 
 #include "refine.h"
+#include "shortest.h"
 
-/* Dijkstra's algorithm with a binary heap that knows where each vertex is. Nothing is reset between two searches
- * but the heap: what a search has not reached has another round in `reached`. */
-typedef struct search {
-    double *distance;  /* [n] from the start, in this round */
-    int32_t *previous; /* [n] the vertex before it */
-    int32_t *reached;  /* [n] the round that last reached it */
-    int32_t *slot;     /* [n] where it is in the heap; -1 once it is settled */
-    int32_t *heap;     /* [n] vertices */
-    int32_t n_heap, round;
-} search;
+/* Cones in an erratic sequence make a cut whose length grows exponentially with their number, as each segment follows
+ * the windings of the ones before. So a mesh may grow to twice its size and by this many vertices at least; short
+ * coarse cuts need a few dozen. */
+static const int32_t least_room = 50000;
 
 typedef struct cutter {
     const orb_mesh *mesh;  /* the input mesh or `refined` */
     orb_mesh *refined;
     int32_t *refined_from; /* as in orb_disk */
+    int32_t most_vertices; /* that a refined mesh may have */
     int32_t n_cones;
     const int32_t *cones;  /* [n_cones] */
     int32_t *corner;       /* [n_cones] the cones' places on the path */
     int32_t n_path;
-    int32_t *path;         /* [n] vertices, of which n_path are used */
+    int32_t *path;         /* [n] vertices, of which n_path are used; n: of the largest mesh so far, at least */
     int32_t *place;        /* [n] as in refine.h */
-    search search;
+    shortest_search search;
 } cutter;
-
-static void search_clear(search *s)
-{
-    free(s->distance);
-    free(s->previous);
-    free(s->reached);
-    free(s->slot);
-    free(s->heap);
-    *s = (search){0};
-}
-
-static bool search_allocate(search *s, int32_t n_vertices)
-{
-    size_t n = (size_t)n_vertices;
-    search_clear(s);
-    s->distance = malloc(n * sizeof *s->distance);
-    s->previous = malloc(n * sizeof *s->previous);
-    s->reached = calloc(n, sizeof *s->reached);
-    s->slot = malloc(n * sizeof *s->slot);
-    s->heap = malloc(n * sizeof *s->heap);
-    return s->distance && s->previous && s->reached && s->slot && s->heap;
-}
-
-/* Nearer first; equally near: the smaller number, so that the cut does not depend on the heap's history. */
-static bool search_before(const search *s, int32_t u, int32_t v)
-{
-    return s->distance[u] < s->distance[v] || (s->distance[u] == s->distance[v] && u < v);
-}
-
-static void heap_put(search *s, int32_t slot, int32_t vertex)
-{
-    s->heap[slot] = vertex;
-    s->slot[vertex] = slot;
-}
-
-static void heap_raise(search *s, int32_t slot)
-{
-    int32_t vertex = s->heap[slot];
-    while (slot > 0 && search_before(s, vertex, s->heap[(slot - 1) / 2])) {
-        heap_put(s, slot, s->heap[(slot - 1) / 2]);
-        slot = (slot - 1) / 2;
-    }
-    heap_put(s, slot, vertex);
-}
-
-static int32_t heap_take(search *s)
-{
-    int32_t first = s->heap[0], vertex = s->heap[--s->n_heap], slot = 0;
-    int64_t child;
-    while ((child = 2 * (int64_t)slot + 1) < s->n_heap) {
-        if (child + 1 < s->n_heap && search_before(s, s->heap[child + 1], s->heap[child]))
-            child++;
-        if (!search_before(s, s->heap[child], vertex))
-            break;
-        heap_put(s, slot, s->heap[child]);
-        slot = (int32_t)child;
-    }
-    if (s->n_heap > 0)
-        heap_put(s, slot, vertex);
-    s->slot[first] = -1;
-    return first;
-}
-
-static void search_reach(search *s, int32_t vertex, int32_t previous, double distance)
-{
-    if (s->reached[vertex] != s->round) {
-        s->reached[vertex] = s->round;
-        s->distance[vertex] = distance;
-        s->previous[vertex] = previous;
-        heap_put(s, s->n_heap, vertex);
-        heap_raise(s, s->n_heap++);
-    } else if (s->slot[vertex] >= 0 && distance < s->distance[vertex]) {
-        s->distance[vertex] = distance;
-        s->previous[vertex] = previous;
-        heap_raise(s, s->slot[vertex]);
-    }
-}
-
-/* The shortest path between two vertices through free ones, into s->previous; false if there is none. */
-static bool search_run(search *s, const orb_mesh *mesh, const int32_t *place, int32_t from, int32_t to)
-{
-    s->round++;
-    s->n_heap = 0;
-    search_reach(s, from, -1, 0.0);
-    while (s->n_heap > 0) {
-        int32_t vertex = heap_take(s);
-        if (vertex == to)
-            return true;
-        int32_t h = mesh->vertex_halfedge[vertex];
-        do {
-            int32_t next = halfedge_to(mesh, h);
-            if (place[next] == REFINE_FREE || next == to)
-                search_reach(s, next, vertex, s->distance[vertex] + mesh_edge_length(mesh, h));
-            h = mesh->twin[halfedge_previous(h)];
-        } while (h != mesh->vertex_halfedge[vertex]);
-    }
-    return false;
-}
 
 /* Appends the path that was found to the path so far, which ends in its first vertex. */
 static void path_append(cutter *c, int32_t from, int32_t to)
 {
     int32_t n_new = 0;
-    for (int32_t v = to; v != from; v = c->search.previous[v])
+    for (int32_t v = to; v != from; v = c->search.nodes[v].previous)
         n_new++;
     int32_t place = c->n_path + n_new;
-    for (int32_t v = to; v != from; v = c->search.previous[v]) {
+    for (int32_t v = to; v != from; v = c->search.nodes[v].previous) {
         c->path[--place] = v;
         c->place[v] = place;
     }
@@ -171,68 +69,136 @@ static void path_shorten(cutter *c, int32_t first)
         c->place[c->path[i]] = i;
 }
 
-/* Room for the vertices of c->mesh, of which the first `before` are there already. */
-static bool cutter_allocate(cutter *c, int32_t before)
+/* Room for meshes of so many vertices; those from `before` on are new. */
+static bool cutter_allocate(cutter *c, int32_t before, int32_t n_vertices)
 {
-    size_t n = (size_t)c->mesh->n_vertices;
-    int32_t *path = realloc(c->path, n * sizeof *path);
+    int32_t *path = realloc(c->path, (size_t)n_vertices * sizeof *path);
     if (path)
         c->path = path;
-    int32_t *place = realloc(c->place, n * sizeof *place);
+    int32_t *place = realloc(c->place, (size_t)n_vertices * sizeof *place);
     if (place)
         c->place = place;
     if (!path || !place)
         return false;
-    for (int32_t v = before; v < c->mesh->n_vertices; v++)
+    for (int32_t v = before; v < n_vertices; v++)
         c->place[v] = REFINE_FREE;
-    return search_allocate(&c->search, c->mesh->n_vertices);
+    return shortest_allocate(&c->search, n_vertices);
 }
 
-static orb_status cutter_refine(cutter *c, orb_error *error)
+/* Finds the segment and appends it; false if there is none. */
+static bool find_direct(cutter *c, int32_t from, int32_t to)
+{
+    if (!shortest_find(&c->search, c->mesh, c->place, REFINE_FREE, from, to))
+        return false;
+    int32_t first = c->n_path - 1;
+    path_append(c, from, to);
+    path_shorten(c, first);
+    return true;
+}
+
+/* The segment was found with all marked edges halved, and midpoints are numbered in the sequence of the edges: keeps
+ * the marks of those that it visits, and gives these the numbers that they have without the others. Returns the
+ * number of vertices with these. */
+static int32_t keep_visited(cutter *c, uint8_t *marked)
+{
+    int32_t midpoint = c->mesh->n_vertices, kept = midpoint;
+    for (int32_t e = 0; e < c->mesh->n_edges; e++) {
+        if (!marked[e])
+            continue;
+        int32_t place = c->place[midpoint];
+        c->place[midpoint++] = REFINE_FREE;
+        marked[e] = place >= 0;
+        if (place < 0)
+            continue;
+        c->path[place] = kept;
+        c->place[kept++] = place;
+    }
+    return kept;
+}
+
+/* The mesh with the marked edges halved takes the place of the one that is cut. */
+static orb_status cutter_refine(cutter *c, const uint8_t *marked, orb_error *error)
 {
     orb_mesh *refined;
-    int32_t *from;
-    orb_status status = refine_around(c->mesh, c->place, &refined, &from, error);
+    int32_t *parent;
+    orb_status status = refine_edges(c->mesh, marked, &refined, &parent, error);
     if (status != ORB_OK)
         return status;
     if (c->refined_from)
         for (int32_t t = 0; t < refined->n_triangles; t++)
-            from[t] = c->refined_from[from[t]];
-    int32_t before = c->mesh->n_vertices;
+            parent[t] = c->refined_from[parent[t]];
     free(c->refined_from);
     mesh_free(c->refined);
-    c->refined_from = from;
+    c->refined_from = parent;
     c->refined = refined;
     c->mesh = refined;
-    return cutter_allocate(c, before) ? ORB_OK : error_memory(error);
+    return ORB_OK;
+}
+
+static orb_status blocked(int32_t from, int32_t to, orb_error *error, const char *why)
+{
+    const int32_t ends[2] = {from, to};
+    return error_set_elements(error, ORB_CUT_BLOCKED, ORB_VERTEX, ends, 2, 2,
+                              "the cut from the cone at vertex %d to the one at vertex %d %s", (int)from, (int)to, why);
+}
+
+/* The same where the segment is blocked: it is searched for with every edge halved that is in its way, and then the
+ * mesh is refined where it passes (refine.c proves that both work). */
+static orb_status find_refined(cutter *c, int32_t from, int32_t to, bool *found, orb_error *error)
+{
+    const orb_mesh *mesh = c->mesh;
+    orb_mesh *wide = NULL;
+    int32_t *parent = NULL, first = c->n_path - 1;
+    orb_status status = ORB_OK;
+    uint8_t *marked = malloc((size_t)mesh->n_edges);
+    if (!marked)
+        return error_memory(error);
+    refine_mark(mesh, c->place, marked);
+    if ((status = refine_edges(mesh, marked, &wide, &parent, error)) != ORB_OK)
+        goto done;
+    if (!cutter_allocate(c, mesh->n_vertices, wide->n_vertices)) {
+        status = error_memory(error);
+        goto done;
+    }
+    c->mesh = wide;
+    *found = find_direct(c, from, to);
+    c->mesh = mesh;
+    if (!*found)
+        goto done;
+    if (keep_visited(c, marked) <= c->most_vertices) {
+        status = cutter_refine(c, marked, error);
+        if (status == ORB_OK)
+            path_shorten(c, first); /* with fewer midpoints there are edges that were not there with all of them */
+    } else {
+        status = blocked(from, to, error,
+                         "winds round earlier cones so often that the mesh would have to be refined beyond measure: "
+                         "give the cones in a sequence in which each is near the one before");
+    }
+done:
+    free(marked);
+    free(parent);
+    mesh_free(wide);
+    return status;
 }
 
 static orb_status find_segment(cutter *c, int32_t from, int32_t to, orb_error *error)
 {
-    bool found = search_run(&c->search, c->mesh, c->place, from, to);
+    bool found = find_direct(c, from, to);
     if (!found) {
-        orb_status status = cutter_refine(c, error);
+        orb_status status = find_refined(c, from, to, &found, error);
         if (status != ORB_OK)
             return status;
-        found = search_run(&c->search, c->mesh, c->place, from, to);
     }
-    if (!found) {
-        const int32_t ends[2] = {from, to};
-        return error_set_elements(error, ORB_CUT_BLOCKED, ORB_VERTEX, ends, 2, 2,
-                                  "no path along edges joins the cones at vertices %d and %d without meeting the cut "
-                                  "or another cone: pick other vertices or give the cones in another sequence",
-                                  (int)from, (int)to);
-    }
-    int32_t first = c->n_path - 1;
-    path_append(c, from, to);
-    path_shorten(c, first);
-    return ORB_OK;
+    return found ? ORB_OK
+                 : blocked(from, to, error,
+                           "would meet the cut or another cone whatever way it goes along edges: pick other vertices "
+                           "or give the cones in another sequence");
 }
 
 static orb_status find_path(cutter *c, orb_error *error)
 {
     c->corner = malloc((size_t)c->n_cones * sizeof *c->corner);
-    if (!c->corner || !cutter_allocate(c, 0))
+    if (!c->corner || !cutter_allocate(c, 0, c->mesh->n_vertices))
         return error_memory(error);
     for (int32_t s = 0; s < c->n_cones; s++)
         c->place[c->cones[s]] = REFINE_CONE;
@@ -359,6 +325,7 @@ orb_status cut_create(const orb_mesh *mesh, int32_t n_cones, const int32_t *cone
     if (status != ORB_OK)
         return status;
     cutter c = {.mesh = mesh, .n_cones = n_cones, .cones = cones};
+    c.most_vertices = mesh->n_vertices + (mesh->n_vertices > least_room ? mesh->n_vertices : least_room);
     status = find_path(&c, error);
     if (status == ORB_OK)
         status = disk_create(&c, disk, error);
@@ -367,7 +334,7 @@ orb_status cut_create(const orb_mesh *mesh, int32_t n_cones, const int32_t *cone
     free(c.corner);
     free(c.path);
     free(c.place);
-    search_clear(&c.search);
+    shortest_clear(&c.search);
     return status;
 }
 

@@ -22,7 +22,11 @@ typedef struct orb_disk {
 } orb_disk;
 
 /* Paths are shortest by edge length (Dijkstra) and avoid one another and the other cones. `cones` [n_cones >= 2] are
- * distinct used vertices of a sphere-like mesh; else ORB_BAD_CONE. */
+ * distinct used vertices of a sphere-like mesh; else ORB_BAD_CONE, or what mesh_require_sphere says. Where a path is
+ * blocked the mesh is refined along it, so that there always is one; ORB_CUT_BLOCKED names two cones whose path winds
+ * so much that this would more than double the mesh (and add more than 50,000 vertices). No edge of disk->mesh joins
+ * two vertices of one segment that do not follow one another. If n_cones is 2 and the cones are adjacent, the boundary
+ * is c_1, c_2, and triangles on both sides of the edge have the same copies. */
 orb_status cut_create(const orb_mesh *mesh, int32_t n_cones, const int32_t *cones, orb_disk **disk, orb_error *error);
 void cut_free(orb_disk *disk);
 

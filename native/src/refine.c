@@ -1,4 +1,4 @@
-/* Halving marked edges; room for a path. SPDX-License-Identifier: GPL-3.0-or-later */
+/* Halving of marked edges; room for a path. SPDX-License-Identifier: GPL-3.0-or-later */
 #include "refine.h"
 
 #include <stdlib.h>
@@ -112,8 +112,9 @@ done:
     return status;
 }
 
-/* Why the next segment exists. Let A be the vertices of the path and the cones; let the mesh be a triangulated
- * sphere (mesh_create has seen to it that no two edges and no two triangles have the same vertices).
+/* Why the next segment exists once the marked edges are halved. Let A be the vertices of the path and the cones; let
+ * the mesh be a triangulated sphere (mesh_create has seen to it that no two edges and no two triangles have the same
+ * vertices).
  *
  * (1) In the refined mesh two vertices of A are adjacent only if they follow one another on the path: every other
  *     edge between two of them was halved, and every new edge has a midpoint, which is not in A, at one end. Nor do
@@ -125,22 +126,20 @@ done:
  *     the edges between them, are a connected graph.
  * (4) The path's last vertex has at least three edges of which at most one is the path's, and a cone off the path
  *     has none of these: by (1) all their other neighbours are free. Nothing else is needed for a path from the one
- *     to the other through free vertices. */
-orb_status refine_around(const orb_mesh *mesh, const int32_t *place, orb_mesh **refined, int32_t **parent,
-                         orb_error *error)
+ *     to the other through free vertices.
+ *
+ * Why its own midpoints suffice. Let S be such a path that is also chordless: no edge of the refined mesh joins two
+ * of its vertices that do not follow one another. Halve only the edges whose midpoints S visits; then each edge of S
+ * still exists. If it is an edge of the input or one half of such an edge, this is clear. Else it lies within a
+ * triangle abc of the input and joins two midpoints, or one midpoint, say of bc, to a. Two midpoints of a triangle
+ * are adjacent wherever both are there. From bc's midpoint to a there is an edge if no other edge of abc is halved;
+ * and none is, as its midpoint would be adjacent to both a and bc's midpoint: a chord of S one way or the other. */
+void refine_mark(const orb_mesh *mesh, const int32_t *place, uint8_t *marked)
 {
-    *refined = NULL;
-    *parent = NULL;
-    uint8_t *marked = malloc((size_t)mesh->n_edges + 1);
-    if (!marked)
-        return error_memory(error);
     for (int32_t e = 0; e < mesh->n_edges; e++) {
         int32_t a = place[halfedge_from(mesh, mesh->edge_halfedge[e])];
         int32_t b = place[halfedge_to(mesh, mesh->edge_halfedge[e])];
         bool on_path = a >= 0 && b >= 0 && (a - b == 1 || b - a == 1);
         marked[e] = (a != REFINE_FREE || b != REFINE_FREE) && !on_path;
     }
-    orb_status status = refine_edges(mesh, marked, refined, parent, error);
-    free(marked);
-    return status;
 }

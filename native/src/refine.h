@@ -19,10 +19,10 @@ enum {
 orb_status refine_edges(const orb_mesh *mesh, const uint8_t *marked /* [n_edges] */, orb_mesh **refined,
                         int32_t **parent, orb_error *error);
 
-/* Makes room for the path's next segment: halves the edges that have an end on the path or on a cone and are not
- * edges of the path. The path stays a path of the refined mesh. On a sphere-like mesh a path from the last vertex
- * to any cone that is not yet reached exists afterwards, free but for its ends (proof in refine.c). */
-orb_status refine_around(const orb_mesh *mesh, const int32_t *place /* [n_vertices] */, orb_mesh **refined,
-                         int32_t **parent, orb_error *error);
+/* Marks the edges whose midpoints are room for the path's next segment: those that have an end on the path or on a
+ * cone and are not edges of the path. With all of them halved, a path from the last vertex to any cone that is not
+ * reached yet, free but for its ends, exists on every sphere-like mesh; and the midpoints that it visits suffice
+ * (both proved in refine.c). */
+void refine_mark(const orb_mesh *mesh, const int32_t *place /* [n_vertices] */, uint8_t *marked /* [n_edges] */);
 
 #endif
