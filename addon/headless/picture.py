@@ -73,6 +73,9 @@ def _place_object(scene: bpy.types.Scene, subject: Subject) -> None:
     shown = subject.obj.copy()
     shown.matrix_world = Matrix.Translation(origin) @ Matrix((scale * turned).tolist()).to_4x4()
     scene.collection.objects.link(shown)
+    for slot in shown.material_slots:
+        slot.link = "OBJECT"
+        slot.material = _object_material(subject.material)
     for number, cone in enumerate(subject.cones):
         _add_ball(scene, origin + scale * seen[cone], 0.036, subject.colours[number])
 
@@ -102,7 +105,8 @@ def _place_panel(scene: bpy.types.Scene, subject: Subject) -> None:
     if tiling.curvature <= 0:
         tile_radius = _tile_radius(tiling, images[0])
         radius = WINDOW * tile_radius if tiling.curvature == 0 else min(1.0, DISK_WINDOW * tile_radius)
-        images = _images_within(tiling, images, radius + tile_radius)
+        furthest = np.linalg.norm(drawn(tiling.curvature, tiling.points @ images[0].T), axis=1).max()
+        images = _images_within(tiling, images, radius + furthest)
         _add_backing(scene, centre, face)
     scale = PANEL_RADIUS / radius
     glows = tiling.curvature <= 0
@@ -267,11 +271,21 @@ def _floor_material() -> bpy.types.Material:
     nodes.clear()
     output, both = nodes.new("ShaderNodeOutputMaterial"), nodes.new("ShaderNodeAddShader")
     diffuse, glow = nodes.new("ShaderNodeBsdfDiffuse"), nodes.new("ShaderNodeEmission")
-    for node, part in ((diffuse, 0.55), (glow, 0.5)):
+    for node, part in ((diffuse, 0.45), (glow, 0.68)):
         node.inputs["Color"].default_value = (*(part * value for value in FLOOR), 1.0)
         links.new(node.outputs[0], both.inputs[0 if node is diffuse else 1])
     links.new(both.outputs[0], output.inputs["Surface"])
     return material
+
+
+def _object_material(material: bpy.types.Material) -> bpy.types.Material:
+    """A copy that glows a little in its own colours: light from all sides, without the noise of sampling it."""
+    shown = material.copy()
+    lit = next(node for node in shown.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
+    colour = blender_mesh.principled_input(lit, "Base Color").links[0].from_socket
+    shown.node_tree.links.new(colour, blender_mesh.principled_input(lit, "Emission Color", "Emission"))
+    blender_mesh.principled_input(lit, "Emission Strength").default_value = 0.25
+    return shown
 
 
 def _panel_material(material: bpy.types.Material, paleness: float, glows: bool) -> bpy.types.Material:
@@ -299,10 +313,10 @@ def _light(scene: bpy.types.Scene) -> None:
         world.use_nodes = True
     background = next(node for node in world.node_tree.nodes if node.type == "BACKGROUND")
     background.inputs["Color"].default_value = (0.95, 0.97, 1.0, 1.0)
-    background.inputs["Strength"].default_value = 0.45
+    background.inputs["Strength"].default_value = 0.2
     scene.world = world
     sun = bpy.data.lights.new("Orbifold Sun", "SUN")
-    sun.energy, sun.angle = 2.1, np.radians(8)
+    sun.energy, sun.angle = 2.1, np.radians(5)
     lamp = bpy.data.objects.new("Orbifold Sun", sun)
     lamp.rotation_euler = Vector((0.45, 0.75, -1.0)).to_track_quat("-Z", "Y").to_euler()
     scene.collection.objects.link(lamp)
@@ -333,6 +347,6 @@ def _render(scene: bpy.types.Scene, path: Path) -> None:
     render.resolution_percentage = 100
     render.image_settings.file_format, render.image_settings.color_mode = "PNG", "RGB"
     render.image_settings.compression = 100
-    render.use_file_extension = False
+    render.use_file_extension, render.dither_intensity = False, 0.0  # dither is noise that PNG cannot pack
     render.filepath = str(path)
     bpy.ops.render.render(write_still=True, scene=scene.name)

@@ -30,7 +30,7 @@ from .tiling import make_tiling
 EXPECTED = (RunError, core.OrbifoldError, core.MeshFileError, blender_mesh.BlenderMeshError)
 ENDINGS = ("blend", "json", "npz", "png")
 IMAGES = 120  # of the tile, at most: 532 has 60
-TRIANGLES_DRAWN = 2_500_000  # of all images of the tile in the picture, where each is a mesh of its own
+TRIANGLES_DRAWN = 1_600_000  # of all images of the tile in the picture, where each is a mesh of its own
 
 
 @dataclass(frozen=True)

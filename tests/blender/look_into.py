@@ -18,6 +18,34 @@ corners = uv[np.array([triangle.loops for triangle in mesh.loop_triangles])]
 one, two = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
 area = one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0]
 nodes = [node for material in mesh.materials for node in material.node_tree.nodes]
+
+
+def colours_at(where):
+    """The texture's colours at (k, 2) texture coordinates, bilinear."""
+    texture = next(node.image for node in nodes if node.type == "TEX_IMAGE")
+    width, height = texture.size
+    texels = np.empty(width * height * 4, np.float32)
+    texture.pixels.foreach_get(texels)
+    texels = texels.reshape(height, width, 4)[..., :3]
+    x, y = where[:, 0] * width - 0.5, where[:, 1] * height - 0.5
+    i, j = np.floor(x).astype(int), np.floor(y).astype(int)
+    a, b = (x - i)[:, None], (y - j)[:, None]
+    corner = lambda di, dj: texels[(j + dj) % height, (i + di) % width]  # noqa: E731
+    return (1 - b) * ((1 - a) * corner(0, 0) + a * corner(1, 0)) + b * ((1 - a) * corner(0, 1) + a * corner(1, 1))
+
+
+def seam_colours():
+    """Colours at the middle of each seam edge, from its two faces: (seams, 2, 3)."""
+    sides = {edge.index: [] for edge in mesh.edges if edge.use_seam}
+    for polygon in mesh.polygons:
+        loops = list(polygon.loop_indices)
+        for here, there in zip(loops, loops[1:] + loops[:1]):
+            if mesh.loops[here].edge_index in sides:
+                sides[mesh.loops[here].edge_index].append((uv[here] + uv[there]) / 2)
+    return colours_at(np.array(list(sides.values())).reshape(-1, 2)).reshape(-1, 2, 3)
+
+
+at_seams = seam_colours()
 image = bpy.data.images.load(png)
 pixels = np.empty(len(image.pixels), np.float32)
 image.pixels.foreach_get(pixels)
@@ -35,6 +63,8 @@ seen = {
     "material_reads_uv": any(getattr(node, "uv_map", "") == "Orbifold" for node in nodes),
     "images_without_data": [other.name for other in bpy.data.images if other is not image and not other.has_data
                             and other.type == "IMAGE" and len(other.pixels) == 0],
+    "seam_colour_gap": float(np.abs(at_seams[:, 0] - at_seams[:, 1]).max(axis=1).mean()),
+    "seam_colour_spread": float(at_seams.std(axis=0).mean()),
     "png_size": list(image.size),
     "png_spread": [float(pixels[:, :half].std()), float(pixels[:, half:].std())],
 }

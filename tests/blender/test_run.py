@@ -115,6 +115,8 @@ def check_files(folder: Path, name: str, signature: str, cones: list[int]) -> di
     assert seen["seams"] >= len(cones) - 1
     assert ("Orbifold Sphere" in seen["shape_keys"]) == (report["orbifold"]["geometry"] == "spherical")
     assert seen["materials"] == 1 and seen["material_reads_uv"] and seen["images_without_data"] == []
+    # the two sides of a seam show the same colours, up to what the texture resolves
+    assert seen["seam_colour_gap"] < 0.2 * seen["seam_colour_spread"], "the pattern breaks at the seams"
     assert seen["png_size"] == [960, 540]
     assert min(seen["png_spread"]) > 0.03, "a half of the picture is blank"
     return report
