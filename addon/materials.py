@@ -14,7 +14,7 @@ from .core import Result
 from .faces import FaceLayout
 
 IMAGE_SIZE = 1024
-HYPERBOLIC_SIZE = 2048  # the layout takes but a part of the disk
+SMALL_LAYOUT = 0.6  # of the unit square; below it, as in the middle of the hyperbolic disk, the image is twice as fine
 
 
 def make_material(
@@ -25,7 +25,8 @@ def make_material(
     if layout is None:
         layout = FaceLayout(result.chart, result.uv, result.embedding[result.cut_triangles], result.seams, 0)
     name = f"Orbifold {obj.name}"
-    size = size or (HYPERBOLIC_SIZE if result.geometry == "hyperbolic" else IMAGE_SIZE)
+    extent = np.ptp(layout.uv.reshape(-1, 2), axis=0).max()
+    size = size or (IMAGE_SIZE if extent > SMALL_LAYOUT else 2 * IMAGE_SIZE)
     material = bpy.data.materials.get(name) or bpy.data.materials.new(name)
     blender_mesh.enable_nodes(material)
     tree = material.node_tree

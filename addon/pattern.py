@@ -19,7 +19,7 @@ from .charts import CURVATURE, Chart, chart_of
 from .core import Result
 from .faces import FaceLayout
 
-BLOCK = 32  # pixels; the orbit points that matter are looked up once for each block
+BLOCK, LEAST_BLOCK = 32, 4  # pixels; the orbit points that matter are looked up once for each block
 MAX_ORBIT = 40000
 RINGS = 20.0  # per square root of the tile's area
 SOFTNESS = 1.5  # of the minimum, in rings
@@ -28,31 +28,45 @@ BACKGROUND = (0.5, 0.5, 0.5)
 
 
 def image(result: Result, layout: FaceLayout, size: int = 1024) -> np.ndarray:
-    """(size, size, 4) float32, first row at the bottom: the pattern on the unit square of the layout. Where that
-    repeats, so does the image; elsewhere it is drawn about the layout only."""
+    """(size, size, 4) float32, size a multiple of BLOCK, first row at the bottom: the pattern on the unit square of
+    the layout. Where that repeats, so does the image; elsewhere it is drawn about the layout only."""
     corners = layout.embedding
     chart = chart_of(layout.chart, result.geometry, corners, layout.uv)
-    low, high = np.zeros(2), np.ones(2)
-    if layout.chart != "periodic":
-        low, high = layout.uv.reshape(-1, 2).min(0), layout.uv.reshape(-1, 2).max(0)
     curvature = CURVATURE[result.geometry]
     orbits = cone_orbits(result, chart, corners)
     spacing = np.sqrt(_tile_area(result, corners)) / RINGS
     pixels = np.ones((size, size, 4), np.float32)
     pixels[..., :3] = BACKGROUND
-    first, last = np.floor(low * size - BLOCK).astype(int), np.ceil(high * size + BLOCK).astype(int)
-    for row in range(0, size, BLOCK):
-        for column in range(0, size, BLOCK):
-            if not (first[1] <= row + BLOCK and row <= last[1] and first[0] <= column + BLOCK and column <= last[0]):
-                continue
-            y, x = np.mgrid[row : min(row + BLOCK, size), column : min(column + BLOCK, size)]
-            points = chart.to_point((np.stack([x.ravel(), y.ravel()], -1) + 0.5) / size)
-            inside = np.isfinite(points).all(-1)
-            if inside.any():
-                colours = np.tile(np.float32(BACKGROUND), (len(points), 1))
-                colours[inside] = colour_at(points[inside], orbits, curvature, spacing)
-                pixels[row : row + BLOCK, column : column + BLOCK, :3] = colours.reshape(*x.shape, 3)
+    blocks = np.ones((size // BLOCK, size // BLOCK), bool)
+    if layout.chart != "periodic":
+        blocks = _covered_blocks(layout.uv, size // BLOCK)
+    waiting = [(y, x, BLOCK) for y, x in (np.argwhere(blocks) * BLOCK).tolist()]
+    while waiting:
+        row, column, side = waiting.pop()
+        y, x = np.mgrid[row : row + side, column : column + side]
+        points = chart.to_point((np.stack([x.ravel(), y.ravel()], -1) + 0.5) / size)
+        inside = np.isfinite(points).all(-1)
+        if not inside.any():
+            continue
+        if side > LEAST_BLOCK and not (inside.all() and _width(points, curvature) < 2 * SOFTNESS * spacing):
+            half = side // 2  # few of the orbit count only where the points are near one another
+            waiting += [(row + i, column + j, half) for i in (0, half) for j in (0, half)]
+            continue
+        colours = np.tile(np.float32(BACKGROUND), (len(points), 1))
+        colours[inside] = colour_at(points[inside], orbits, curvature, spacing)
+        pixels[row : row + side, column : column + side, :3] = colours.reshape(*x.shape, 3)
     return pixels
+
+
+def _covered_blocks(uv: np.ndarray, blocks: int) -> np.ndarray:
+    """(blocks, blocks) bool, rows from below: those of the unit square that a triangle's bounding box touches, and
+    their neighbours."""
+    low = np.clip(np.floor(uv.min(1) * blocks).astype(int) - 1, 0, blocks)
+    high = np.clip(np.floor(uv.max(1) * blocks).astype(int) + 2, 0, blocks)
+    steps = np.zeros((blocks + 1, blocks + 1), int)
+    for x, y, step in ((low, low, 1), (high, low, -1), (low, high, -1), (high, high, 1)):
+        np.add.at(steps, (y[:, 1], x[:, 0]), step)
+    return steps.cumsum(0).cumsum(1)[:blocks, :blocks] > 0
 
 
 def colour_at(points: np.ndarray, orbits: list[np.ndarray], curvature: int, spacing: float) -> np.ndarray:
@@ -148,10 +162,17 @@ def _nearness(points: np.ndarray, orbit: np.ndarray, curvature: int, softness: f
     units of softness. The points are near one another, so that few of the orbit count."""
     middle = points[len(points) // 2][None]
     from_middle = _distance(np.sqrt(_chords(orbit, middle, curvature)[:, 0]), curvature)
-    width = _distance(np.sqrt(_chords(points, middle, curvature).max()), curvature)
-    candidates = orbit[from_middle <= from_middle.min() + 2 * width + TAIL * softness]
-    distances = _distance(np.sqrt(_chords(points, candidates, curvature)), curvature)
-    return np.logaddexp.reduce(-distances / softness, axis=1)
+    reach = 2 * _width(points, curvature) + TAIL * softness
+    candidates = orbit[from_middle <= from_middle.min() + reach]
+    distances = _distance(np.sqrt(_chords(points, candidates, curvature)), curvature) / softness
+    least = distances.min(1)
+    return np.log(np.exp(least[:, None] - distances).sum(1)) - least
+
+
+def _width(points: np.ndarray, curvature: int) -> float:
+    """The greatest distance from the middle one of the points."""
+    middle = points[len(points) // 2][None]
+    return float(_distance(np.sqrt(_chords(points, middle, curvature).max()), curvature))
 
 
 def _spread(cones: np.ndarray, curvature: int) -> float:

@@ -100,7 +100,6 @@ class EmbeddingOperator:
         picked = cones.read_cones(obj.data)
         with blender_mesh.object_mode(obj):
             self._arrays = blender_mesh.read_mesh(obj.data)
-        self._object = obj.name
         self._cones = [cone.vertex for cone in picked]
         text = self.signature or obj.data.orbifold.signature
         self._changed = text != core.format_signature([cone.order for cone in picked])
