@@ -111,7 +111,8 @@ static void check_is_disk(const orb_disk *disk)
     if (disk->n_boundary == 2) return; /* an edge between two cones: no loop in the copies */
     double *vertices = sample_allocate(3 * (size_t)disk->n_copies, sizeof *vertices);
     for (int32_t c = 0; c < disk->n_copies; c++)
-        memcpy(vertices + 3 * (size_t)c, mesh->vertices + 3 * (size_t)disk->copy_vertex[c], 3 * sizeof *vertices);
+        memcpy(vertices + 3 * (size_t)c, mesh->vertices + 3 * (size_t)disk->copy_vertex[c],
+               3 * sizeof *vertices);
     const orb_mesh_arrays arrays = {disk->n_copies, vertices, mesh->n_triangles, disk->triangles};
     const orb_status status = mesh_create(&arrays, &cut, &error);
     free(vertices);
@@ -150,7 +151,8 @@ static double barycentric(const orb_mesh *mesh, int32_t triangle, const double *
         coordinate[c] = 0;
         for (int i = 0; i < 3; i++) {
             const int j = (i + 1) % 3, l = (i + 2) % 3;
-            coordinate[c] += normal[i] * ((q[j] - p[j]) * (r[l] - p[l]) - (q[l] - p[l]) * (r[j] - p[j])) / square;
+            coordinate[c] +=
+                normal[i] * ((q[j] - p[j]) * (r[l] - p[l]) - (q[l] - p[l]) * (r[j] - p[j])) / square;
         }
     }
     for (int i = 0; i < 3; i++) off += normal[i] * (p[i] - mesh->vertices[3 * (size_t)corner[0] + (size_t)i]);
@@ -380,7 +382,8 @@ TEST(prefers_an_edge_to_a_flat_detour)
     orb_disk *disk = NULL;
     const int32_t cones[] = {0, 1, 3};
     REQUIRE(cut_create(mesh, 3, cones, &disk, NULL) == ORB_OK);
-    CHECK(disk->n_boundary == 4 && disk->boundary[0] == 0 && disk->boundary[1] == 1 && disk->boundary[2] == 3);
+    CHECK(disk->n_boundary == 4 && disk->boundary[0] == 0 && disk->boundary[1] == 1 &&
+          disk->boundary[2] == 3);
     check_disk(mesh, disk, 3, cones);
     cut_free(disk);
     mesh_free(mesh);
@@ -395,7 +398,8 @@ TEST(refines_where_cones_block_the_way)
     sample = sample_icosphere(1);
     orb_mesh *sphere = mesh_of(&sample);
     REQUIRE(octahedron && cube && sphere);
-    const int32_t opposite[] = {0, 1, 2, 3, 4, 5}; /* each next cone is opposite to, or cut off from, the last one */
+    const int32_t opposite[] = {0, 1, 2,
+                                3, 4, 5}; /* each next cone is opposite to, or cut off from, the last one */
     CHECK(cut_and_check(octahedron, 6, opposite));
     const int32_t antipodes[] = {0, 7, 1, 6, 2, 5, 3, 4};
     CHECK(cut_and_check(cube, 8, antipodes));
@@ -468,8 +472,8 @@ TEST(halves_any_edges)
     mesh_free(mesh);
 }
 
-static void check_refused(const orb_mesh *mesh, int32_t k, const int32_t *cones, orb_status status, int32_t n_elements,
-                          const int32_t *elements)
+static void check_refused(const orb_mesh *mesh, int32_t k, const int32_t *cones, orb_status status,
+                          int32_t n_elements, const int32_t *elements)
 {
     orb_error error = {0};
     orb_disk *disk = NULL;
@@ -486,7 +490,8 @@ TEST(names_bad_cones)
     sample_mesh sample = sample_icosphere(1);
     sample.vertices = realloc(sample.vertices, 3 * (size_t)(sample.n_vertices + 2) * sizeof(double));
     REQUIRE(sample.vertices != NULL);
-    for (int i = 0; i < 6; i++) sample.vertices[3 * sample.n_vertices + i] = i; /* two isolated vertices, 42 and 43 */
+    for (int i = 0; i < 6; i++)
+        sample.vertices[3 * sample.n_vertices + i] = i; /* two isolated vertices, 42 and 43 */
     sample.n_vertices += 2;
     orb_mesh *mesh = mesh_of(&sample);
     REQUIRE(mesh != NULL && mesh->n_vertices == 44);
