@@ -95,7 +95,7 @@ def read_edges(mesh: bpy.types.Mesh) -> np.ndarray:
 
 
 def read_mesh(mesh: bpy.types.Mesh) -> MeshArrays:
-    """Triangles of the whole mesh, hidden faces included. Quads and n-gons are triangulated, the mesh is not changed."""
+    """Triangles of the whole mesh, hidden faces included. Quads and n-gons are triangulated; the mesh stays as it is."""
     n_loops, n_polygons = len(mesh.loops), len(mesh.polygons)
     loop_vertices = read_loop_vertices(mesh)
     loops, polygons = _triangle_loops(mesh, n_loops, n_polygons)
@@ -215,7 +215,7 @@ def mark_seams(mesh: bpy.types.Mesh, pairs: Optional[np.ndarray]) -> None:
 
 
 def split_edges(mesh: bpy.types.Mesh, pairs: np.ndarray) -> None:
-    """Cut the mesh open along the edges between these pairs of vertices. Faces and their corners keep their sequence."""
+    """Cut the mesh open along the edges between these pairs of vertices. Faces and corners keep their sequence."""
     found = edge_indices(mesh, pairs)
     bm = bmesh.new()
     try:

@@ -20,7 +20,7 @@ from .blender_mesh import MeshArrays
 from .core import Result
 
 FITTED = ("conformal", "stereographic")  # charts that fill the unit square
-SAME = 1e-7  # two placings of an edge are the same below this part of its length; neighbouring copies differ by far more
+SAME = 1e-7  # two placings of an edge are one below this part of its length; neighbouring copies differ by far more
 
 
 @dataclass(frozen=True)
@@ -51,9 +51,8 @@ def layout_of(result: Result, arrays: MeshArrays, chart: str) -> FaceLayout:
     placed[moved] = charts.to_points(z[moved], curvature)
     uv = uv.copy()
     unmoved = np.setdiff1d(np.arange(len(uv)), moved)
-    uv[moved] = charts.chart_of(chart, result.geometry, result.embedding[result.cut_triangles[unmoved]], uv[unmoved]).to_uv(
-        placed[moved]
-    )
+    known = result.embedding[result.cut_triangles[unmoved]]
+    uv[moved] = charts.chart_of(chart, result.geometry, known, uv[unmoved]).to_uv(placed[moved])
     for corners in (uv, placed):
         corners[touched] = _first_of_each(arrays.loops[touched], corners[touched])
     return FaceLayout(chart, _fitted(uv) if chart in FITTED else uv, placed, seams, len(groups))

@@ -38,7 +38,7 @@ class OBJECT_OT_orbifold_sphere(EmbeddingOperator, bpy.types.Operator):
         description="What the mesh is mapped onto",
         items=(
             ("WHOLE", "Whole Sphere", "The mesh covers the sphere once and stays in one piece"),
-            ("SPLIT", "Tile, on a Split Copy", "A copy of the object, split along the seam, covers one tile of the sphere"),
+            ("SPLIT", "Tile, on a Split Copy", "A copy of the object, split along the seam, covers one tile"),
         ),
     )
 

@@ -58,7 +58,7 @@ class UV_OT_orbifold_unwrap(EmbeddingOperator, bpy.types.Operator):
     )
     sphere_key: BoolProperty(
         name="Sphere Shape Key",
-        description="Spherical orbifolds: also add the shape key Orbifold Sphere, the mesh mapped onto the whole sphere",
+        description="Spherical orbifolds: also add the shape key Orbifold Sphere, the mesh on the whole sphere",
         default=True,
     )
     pattern: BoolProperty(

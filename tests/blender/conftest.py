@@ -70,7 +70,8 @@ class Home:
             out = self.folder / f"{script}.json"
             done = self.run(script, str(out))
             found = json.loads(out.read_text(encoding="utf-8")) if out.exists() else {}
-            self._results[script] = {**found, "": f"Blender ended with status {done.returncode}:\n{done.stdout[-3000:]}"}
+            end = f"Blender ended with status {done.returncode}:\n{done.stdout[-3000:]}"
+            self._results[script] = {**found, "": end}
         return self._results[script]
 
 

@@ -91,7 +91,8 @@ def check_several_components():
     vertices, faces = arrays_of(blob())
     n = len(vertices)
     far = [[x + 5, y, z] for x, y, z in vertices]
-    obj = with_cones(mesh_object(vertices + far, faces + [[v + n for v in face] for face in faces]), vertices=[5, 50, 100])
+    faces += [[v + n for v in face] for face in faces]
+    obj = with_cones(mesh_object(vertices + far, faces), vertices=[5, 50, 100])
     found, _, _ = refused(obj)
     assert len(found) == 2 and min(found) < n <= max(found), found
 

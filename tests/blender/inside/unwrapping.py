@@ -10,7 +10,8 @@ import numpy as np
 
 sys.path.insert(0, os.path.dirname(__file__))
 from harness import (  # noqa: E402
-    blob, click, digest, edit_mode, enable, far_vertices, object_mode, part, picked, quad_blob, run_checks, set_cones, user,
+    blob, click, digest, edit_mode, enable, far_vertices, object_mode, part, picked, quad_blob, run_checks,
+    set_cones, user,
 )
 
 enable()

@@ -30,7 +30,8 @@ def areas(kind):
 
 def in_view(kind="VIEW_3D", region="WINDOW"):
     area = areas(kind)[0]
-    return bpy.context.temp_override(window=window(), area=area, region=next(r for r in area.regions if r.type == region))
+    part_of = next(r for r in area.regions if r.type == region)
+    return bpy.context.temp_override(window=window(), area=area, region=part_of)
 
 
 def steps():
