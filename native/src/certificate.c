@@ -54,8 +54,8 @@ static orb_status check_orientation(orb_embedding *embedding, orb_error *error) 
                                   "degenerate faces, or take uniform weights",
                                   (long long)flipped, (int)named[0]);
     return error_set_elements(error, ORB_CERTIFICATE_FAILED, ORB_TRIANGLE, named, n_named, flipped,
-                              "%lld triangles are flipped on the tile, first triangle %d: raise the clamp or take "
-                              "uniform weights, which cannot flip",
+                              "%lld triangles are flipped on the tile, first triangle %d: raise the clamp, take uniform "
+                              "weights, or put many cones in the sequence of a short walk",
                               (long long)flipped, (int)named[0]);
 }
 

@@ -92,14 +92,21 @@ orb_point geometry_exp(const orb_geometry *geometry, orb_point p, double complex
     return narrow((ddc){re, im});
 }
 
+/* |a| without hypot's care for the ends of the exponent range, which a bounded chart does not meet. */
+static double modulus(double complex a) { return sqrt(creal(a) * creal(a) + cimag(a) * cimag(a)); }
+
 orb_edge_terms geometry_edge(const orb_geometry *geometry, orb_point p, orb_point q) {
-    /* With r = tan_K(d / 2):  tan_K d = 2 r / (1 - K r^2),  sin_K d = 2 r / (1 + K r^2). */
-    double complex t = geometry_toward(geometry, p, q), s = geometry_toward(geometry, q, p);
-    double r = cabs(t), ratio = atan_ratio(geometry, r), bend = geometry->K * r * r, other = cabs(s);
+    /* toward p -> q is difference / at_p, and q -> p is -difference / at_q. With r = tan_K(d / 2):
+     * tan_K d = 2 r / (1 - K r^2),  sin_K d = 2 r / (1 + K r^2). */
+    double complex difference = (q.z - p.z) + (q.low - p.low);
+    double complex at_p = conformal_factor(geometry, p) + geometry->K * conj(p.z) * difference;
+    double complex at_q = conformal_factor(geometry, q) - geometry->K * conj(q.z) * difference;
+    double size = modulus(difference), size_p = modulus(at_p), size_q = modulus(at_q);
+    double r = size / size_p, ratio = atan_ratio(geometry, r), bend = geometry->K * r * r;
     orb_edge_terms edge = {2 * r * ratio, 1, 1, ratio * (1 - bend), ratio * (1 + bend)};
-    if (r > 0 && other > 0) {
-        edge.at_p = t / r;
-        edge.at_q = -s / other;
+    if (size > 0) {
+        edge.at_p = conj(at_p) * difference / (size_p * size);
+        edge.at_q = conj(at_q) * difference / (size_q * size);
     }
     return edge;
 }

@@ -7,11 +7,11 @@
 
 #include "lbfgs.h"
 
-static const double gradient_goal = 1e-13;      /* relative gradient at which to stop */
+static const double gradient_goal = 1e-12;      /* relative gradient at which to stop */
 static const double gradient_accepted = 1e-9;   /* the least that counts as converged */
 static const double energy_noise = 1e-13;       /* relative: predicted decreases below this are noise */
 static const double sufficient_decrease = 1e-4; /* Armijo */
-static const double slow = 0.25;                /* a kept factor is renewed when the gradient falls by less */
+static const double slow = 0.8;                 /* a kept factor is renewed when the gradient falls by less */
 enum { MOST_STEPS = 300, MOST_HALVINGS = 40, MOST_STALLS = 2 };
 
 typedef struct minimiser {
@@ -179,64 +179,56 @@ static void move_back(minimiser *work) {
 /* Whether the decrease that a step promises is below what differences of energies can show. */
 static bool is_noise(const minimiser *work, double slope) { return -slope < energy_noise * work->energy; }
 
-/* Halves the step until the energy falls enough; in the noise, the full step. Leaves the scale used in *taken, which
- * is 0 when no step helps. */
+/* Halves the step until the energy falls enough; in the noise, the full step. Afterwards position and gradient are the
+ * new point's, trial and old_gradient the old one's; *taken is the scale used, 0 when no step helps and nothing moved. */
 static void line_search(minimiser *work, double slope, double *taken) {
-    double start = monitor_clock(), longest = 0, before = work->energy;
+    double longest = 0, before = work->energy;
     for (int32_t v = 0; v < work->problem->n_vertices; v++)
         longest = fmax(longest, cabs(work->step[v]));
     double cap = geometry_longest_step(work->problem->geometry), scale = longest > cap ? cap / longest : 1;
     bool noise = is_noise(work, slope);
-    *taken = 0;
-    for (int halvings = 0; halvings < MOST_HALVINGS; halvings++, scale /= 2) {
-        move(work, scale);
-        problem_place(work->problem, work->position, work->placed, work->turn);
-        double energy = problem_energy(work->problem, work->placed, NULL, work->position, NULL, NULL, NULL);
-        if (noise || energy <= before + sufficient_decrease * scale * slope) {
-            *taken = scale;
-            break;
-        }
-        move_back(work);
-    }
-    work->minimum->seconds_solve += monitor_clock() - start;
-}
-
-/* After a step: gradient at the new point, and the pair for the memory, all in the new point's frames. */
-static void learn(minimiser *work, double taken) {
-    int32_t n = work->problem->n_vertices;
     double complex *swap = work->old_gradient;
     work->old_gradient = work->gradient;
     work->gradient = swap;
+    for (int halvings = 0; halvings < MOST_HALVINGS; halvings++, scale /= 2) {
+        move(work, scale);
+        evaluate(work);
+        if (noise || work->energy <= before + sufficient_decrease * scale * slope) {
+            *taken = scale;
+            return;
+        }
+        move_back(work);
+    }
+    *taken = 0;
     evaluate(work);
-    if (!work->memory)
-        return;
-    for (int32_t v = 0; v < n; v++) {
+}
+
+/* The pair of the step just taken goes into the memory, all in the new point's frames. */
+static void learn(minimiser *work, double taken) {
+    double start = monitor_clock();
+    for (int32_t v = 0; v < work->problem->n_vertices; v++) {
         work->transport[v] = geometry_transport(work->problem->geometry, work->trial[v], work->position[v]);
         work->step[v] *= taken * work->transport[v];
         work->old_gradient[v] *= work->transport[v];
     }
     lbfgs_transport(work->memory, work->transport);
     lbfgs_remember(work->memory, work->step, work->old_gradient, work->gradient);
+    work->minimum->seconds_solve += monitor_clock() - start;
 }
 
 /* One step. Sets *stuck when none lowers the energy. */
 static orb_status advance(minimiser *work, bool *stuck, orb_error *error) {
-    double slope, taken;
+    double slope, taken = 0;
     orb_status status = find_step(work, &slope, error);
     if (status != ORB_OK)
         return status;
-    *stuck = true;
-    if (!(slope < 0)) /* NaN included */
-        return ORB_OK;
     int32_t *count = is_noise(work, slope) ? &work->minimum->refinements : &work->minimum->iterations;
-    line_search(work, slope, &taken);
-    if (taken == 0) {
-        problem_place(work->problem, work->position, work->placed, work->turn);
-        return ORB_OK;
-    }
-    learn(work, taken);
-    ++*count;
-    *stuck = false;
+    if (slope < 0) /* not NaN */
+        line_search(work, slope, &taken);
+    *stuck = taken == 0;
+    *count += !*stuck;
+    if (!*stuck && work->memory)
+        learn(work, taken);
     return ORB_OK;
 }
 
