@@ -74,7 +74,9 @@ def torus(n=8, m=6):
 
 
 def far_apart(vertices, triangles, k):
-    """k vertices by farthest-point sampling, the first the one farthest from the centroid."""
+    """k vertices by farthest-point sampling, in the sequence of a short walk from the one farthest from the centroid.
+
+    The cut runs through the cones in turn, so a sequence that goes to and fro asks for a very distorted map."""
     used = np.unique(triangles)
     points = vertices[used]
     picked = [int(np.argmax(((points - points.mean(0)) ** 2).sum(1)))]
@@ -82,7 +84,11 @@ def far_apart(vertices, triangles, k):
     while len(picked) < k:
         distance = np.minimum(distance, ((points - points[picked[-1]]) ** 2).sum(1))
         picked.append(int(np.argmax(distance)))
-    return used[picked].astype(np.int32)
+    walk = picked[:1]
+    while len(walk) < k:
+        left = [v for v in picked if v not in walk]
+        walk.append(left[int(np.argmin(((points[left] - points[walk[-1]]) ** 2).sum(1)))])
+    return used[walk].astype(np.int32)
 
 
 def shared_file(*parts):

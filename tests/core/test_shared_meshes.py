@@ -19,17 +19,15 @@ MESHES = [
 SIGNATURES = ["442", "333", "632", "2222", "432", "532", "332", "22(5)", "33", "237", "22222", "2" * 10]
 
 
-@functools.lru_cache(maxsize=2)
-def mesh_and_cones(path):
-    vertices, triangles = core.read_mesh(path)
-    return vertices, triangles, far_apart(vertices, triangles, 10)
+read = functools.lru_cache(maxsize=2)(core.read_mesh)
 
 
 def verdict(path, signature, layout):
     """The library's certificate and the judge's verdict, or the error."""
-    vertices, triangles, cones = mesh_and_cones(path)
+    vertices, triangles = read(path)
+    cones = far_apart(vertices, triangles, len(core.parse_signature(signature).orders))
     try:
-        result = core.embed(vertices, triangles, signature, cones[: len(core.parse_signature(signature).orders)])
+        result = core.embed(vertices, triangles, signature, cones)
     except core.OrbifoldError as error:
         return None, {"ok": False, "why": [f"{error.status}: {error} {error.element} {error.elements}"]}
     result.save(layout)
