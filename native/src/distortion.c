@@ -5,20 +5,33 @@
 #include <stdlib.h>
 
 typedef struct affine {
-    double area;          /* on the mesh */
+    double area;          /* on the mesh, scaled */
     double tile_area;     /* in the geometry */
-    double complex a, b;  /* the map y -> a y + b conj(y) from a plane holding the triangle */
+    double complex a, b;  /* the map y -> a y + b conj(y) from a plane holding the triangle, scaled */
 } affine;
 
-static affine triangle_map(const orb_embedding *embedding, int32_t t) {
+/* The power of two that brings the largest side along an axis to about 1. Nothing that is measured here depends on
+ * the mesh's unit, and squares of very large or small coordinates would overflow or vanish. */
+static double unit_scale(const orb_mesh *mesh) {
+    double largest = 0;
+    for (int32_t h = 0; h < 3 * mesh->n_triangles; h++)
+        for (int k = 0; k < 3; k++)
+            largest = fmax(largest, fabs(mesh->vertices[3 * (size_t)halfedge_to(mesh, h) + (size_t)k] -
+                                         mesh->vertices[3 * (size_t)halfedge_from(mesh, h) + (size_t)k]));
+    return largest > 0 && isfinite(largest) ? ldexp(1, largest < 0x1p-1000 ? 1000 : -ilogb(largest)) : 1;
+}
+
+static affine triangle_map(const orb_embedding *embedding, double scale, int32_t t) {
     const orb_mesh *mesh = embedding->mesh;
     const orb_geometry *geometry = embedding->tile->geometry;
     double e[2][3];
     for (int c = 0; c < 2; c++)
         for (int k = 0; k < 3; k++)
-            e[c][k] = mesh->vertices[3 * (size_t)mesh->triangles[3 * t + c + 1] + (size_t)k] -
-                      mesh->vertices[3 * (size_t)mesh->triangles[3 * t] + (size_t)k];
-    affine map = {.area = mesh_triangle_area(mesh, t)};
+            e[c][k] = scale * (mesh->vertices[3 * (size_t)mesh->triangles[3 * t + c + 1] + (size_t)k] -
+                               mesh->vertices[3 * (size_t)mesh->triangles[3 * t] + (size_t)k]);
+    double n[3] = {e[0][1] * e[1][2] - e[0][2] * e[1][1], e[0][2] * e[1][0] - e[0][0] * e[1][2],
+                   e[0][0] * e[1][1] - e[0][1] * e[1][0]};
+    affine map = {.area = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / 2};
     double length = sqrt(e[0][0] * e[0][0] + e[0][1] * e[0][1] + e[0][2] * e[0][2]);
     if (!(map.area > 0) || !(length > 0))
         return (affine){0};
@@ -37,9 +50,10 @@ static affine triangle_map(const orb_embedding *embedding, int32_t t) {
 }
 
 void distortion_covariance(const orb_embedding *embedding, double covariance[3]) {
+    double scale = unit_scale(embedding->mesh);
     covariance[0] = covariance[1] = covariance[2] = 0;
     for (int32_t t = 0; t < embedding->mesh->n_triangles; t++) {
-        affine map = triangle_map(embedding, t);
+        affine map = triangle_map(embedding, scale, t);
         double complex x = map.a + map.b, y = CMPLX(0, 1) * (map.a - map.b); /* the columns of J */
         covariance[0] += map.area * (creal(x) * creal(x) + creal(y) * creal(y));
         covariance[1] += map.area * (creal(x) * cimag(x) + creal(y) * cimag(y));
@@ -72,9 +86,10 @@ orb_status distortion_measure(orb_embedding *embedding, orb_error *error) {
     sample *conformal = malloc(((size_t)m + 1) * sizeof *conformal);
     if (!conformal)
         return error_memory(error);
+    double unit = unit_scale(embedding->mesh);
     double area = 0, tile_area = 0, mean = 0, worst = 1, log_mean = 0, log_square = 0, stretch = 0, squeeze = 0;
     for (int32_t t = 0; t < m; t++) {
-        affine map = triangle_map(embedding, t);
+        affine map = triangle_map(embedding, unit, t);
         if (!(map.area > 0))
             continue;
         double large = cabs(map.a) + cabs(map.b), small = fabs(cabs(map.a) - cabs(map.b));
