@@ -108,7 +108,8 @@ double whole_sphere_centre(int32_t n, const orb_ratio *values, const double *wei
             whole_sphere_point(map, values[v], x + 3 * (int64_t)v);
         left = centring_step(n, weights, total, x, mean, s);
         double length = sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
-        if (step == 60 || !(left > 1e-13) || !isfinite(length))
+        /* Beyond 1e8 (a patch of 1e-16 blown up to the sphere's size) there are no digits left to spread. */
+        if (step == 60 || !(left > 1e-13) || !isfinite(length) || cabs(map->m[0][0]) + cabs(map->m[1][1]) > 1e8)
             return left;
         for (int i = 0; i < 3; i++)
             u[i] = s[i] / length;
