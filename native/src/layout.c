@@ -154,7 +154,7 @@ static orb_status error_no_chart(orb_chart chart, const orb_geometry *geometry, 
             name = charts[i].name;
     }
     return error_set(error, ORB_BAD_ARGUMENT,
-                     "The chart %s%s does not fit a layout that is %s: choose %s%s%s%s%s.", name ? "" : "asked for",
+                     "the chart %s%s does not fit a layout that is %s: choose %s%s%s%s%s", name ? "" : "asked for",
                      name ? name : "", geometry_name(geometry), fit[0], n > 2 ? ", " : "", n > 2 ? fit[1] : "",
                      n > 1 ? " or " : "", n > 1 ? fit[n - 1] : "");
 }
@@ -189,7 +189,7 @@ int64_t layout_flipped_float32(int32_t n_triangles, const double *uv) {
 ORB_API orb_status orb_uv(const orb_embedding *embedding, orb_chart chart, double *uv, int64_t *flipped_float32,
                           orb_error *error) {
     if (!embedding || !uv)
-        return error_set(error, ORB_BAD_ARGUMENT, "%s is missing: pass one.", uv ? "The embedding" : "The array uv");
+        return error_set(error, ORB_BAD_ARGUMENT, "%s is missing: pass one", uv ? "the embedding" : "the array uv");
     chart_frame frame = {.geometry = embedding->tile->geometry};
     const chart_row *row = find_chart(chart, geometry_curvature(frame.geometry));
     if (!row)

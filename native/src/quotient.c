@@ -90,11 +90,11 @@ static orb_status find_orbit(const orb_tile *tile, int32_t cone, int64_t length,
             if (known)
                 continue;
             if (f->n_roots == length)
-                return error_set(error, ORB_BAD_ARGUMENT, "The tile's side pairings do not generate a finite group.");
+                return error_set(error, ORB_BAD_ARGUMENT, "the tile's side pairings do not generate a finite group");
             f->roots[f->n_roots++] = image;
         }
     if (f->n_roots != length)
-        return error_set(error, ORB_BAD_ARGUMENT, "The tile's side pairings do not generate the orbifold's group.");
+        return error_set(error, ORB_BAD_ARGUMENT, "the tile's side pairings do not generate the orbifold's group");
     for (int32_t i = 0; i < f->n_roots; i++)
         for (int32_t c = 0; c < 2 * tile->n_cones - 2; c++) {
             root corner = root_of(tile->corners[c].z, 1);
@@ -127,8 +127,8 @@ orb_status quotient_create(const orb_tile *tile, orb_quotient **result, orb_erro
     for (int32_t i = 0; i < tile->n_cones; i++)
         euler -= 1 - 1.0 / tile->orders[i];
     if (tile->n_cones > 3 || !(euler > 0))
-        return error_set(error, ORB_BAD_ARGUMENT, "Only a spherical orbifold has the whole sphere as its quotient: "
-                                                  "choose a signature such as 33, 225, 332, 432 or 532.");
+        return error_set(error, ORB_BAD_ARGUMENT, "only a spherical orbifold has the whole sphere as its quotient: "
+                                                  "choose a signature such as 33, 225, 332, 432 or 532");
     orb_status status = error_memory(error);
     orb_quotient *quotient = calloc(1, sizeof *quotient);
     if (!quotient)

@@ -143,8 +143,8 @@ static void lump_areas(const orb_mesh *mesh, double *weights) {
 ORB_API orb_status orb_whole_sphere(const orb_embedding *embedding, double *positions, int64_t *mended,
                                     orb_error *error) {
     if (!embedding || !positions)
-        return error_set(error, ORB_BAD_ARGUMENT, "%s is missing: pass one.",
-                         positions ? "The embedding" : "The array of positions");
+        return error_set(error, ORB_BAD_ARGUMENT, "%s is missing: pass one",
+                         positions ? "the embedding" : "the array of positions");
     const orb_mesh *mesh = embedding->mesh;
     size_t n = (size_t)mesh->n_vertices;
     orb_quotient *quotient = NULL;
