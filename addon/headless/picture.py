@@ -136,7 +136,8 @@ def _centring(tiling: Tiling) -> np.ndarray:
         first /= np.linalg.norm(first)
         return np.stack([first, np.cross(third, first), third])
     x, y, z = middle / np.sqrt(middle[2] ** 2 - middle[0] ** 2 - middle[1] ** 2)
-    return np.array([[1 + x * x / (1 + z), x * y / (1 + z), -x], [x * y / (1 + z), 1 + y * y / (1 + z), -y], [-x, -y, z]])
+    slant = x * y / (1 + z)
+    return np.array([[1 + x * x / (1 + z), slant, -x], [slant, 1 + y * y / (1 + z), -y], [-x, -y, z]])
 
 
 def _tile_radius(tiling: Tiling, image: np.ndarray) -> float:
