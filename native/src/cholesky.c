@@ -125,6 +125,12 @@ orb_status cholesky_solve(orb_cholesky *cholesky, const double *b, int32_t n_rig
     cholmod_dense right = {.nrow = n, .ncol = (size_t)n_right, .nzmax = n * (size_t)n_right, .d = n,
                            .x = (void *)(uintptr_t)b, .xtype = cholesky->is_complex ? CHOLMOD_COMPLEX : CHOLMOD_REAL,
                            .dtype = CHOLMOD_DOUBLE};
+    int xtype = right.xtype;
+    /* cholmod_l_solve2 would make these itself, but forgets that the first failed when the second does not. */
+    if (!cholmod_l_ensure_dense(&cholesky->work_y, n, (size_t)n_right, n, xtype, common) ||
+        !cholmod_l_ensure_dense(&cholesky->work_e, (size_t)n_right, cholesky->factor->maxesize, (size_t)n_right, xtype,
+                                common))
+        return translate(common, error);
     if (!cholmod_l_solve2(CHOLMOD_A, cholesky->factor, &right, NULL, &cholesky->solution, NULL, &cholesky->work_y,
                           &cholesky->work_e, common))
         return translate(common, error);

@@ -1,0 +1,75 @@
+/* Every allocation of a whole run fails once. SPDX-License-Identifier: GPL-3.0-or-later
+ *
+ * Linked with --wrap=malloc and so on (native/Makefile), so that CHOLMOD's allocations count too. A run must end with
+ * ORB_OUT_OF_MEMORY, or with success where the memory was dispensable; the sanitizers see to it that nothing leaks. */
+#include <stdlib.h>
+
+#include "check.h"
+#include "meshes.h"
+
+static long allocations, failing = -1; /* -1: none fails */
+
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t count, size_t size);
+void *__real_realloc(void *old, size_t size);
+void *__wrap_malloc(size_t size);
+void *__wrap_calloc(size_t count, size_t size);
+void *__wrap_realloc(void *old, size_t size);
+
+void *__wrap_malloc(size_t size) { return allocations++ == failing ? NULL : __real_malloc(size); }
+void *__wrap_calloc(size_t count, size_t size) {
+    return allocations++ == failing ? NULL : __real_calloc(count, size);
+}
+void *__wrap_realloc(void *old, size_t size) { return allocations++ == failing ? NULL : __real_realloc(old, size); }
+
+/* Embeds, reads the UVs and, on the sphere, the whole sphere. */
+static orb_status use_everything(const sample_mesh *mesh, const orb_request *request, double *room) {
+    orb_mesh_arrays arrays = sample_arrays(mesh);
+    orb_embedding *embedding = NULL;
+    orb_error error;
+    orb_status status = orb_embed(&arrays, request, &embedding, &error);
+    CHECK((status == ORB_OK) == (embedding != NULL));
+    orb_report report = {0};
+    if (status == ORB_OK) {
+        orb_embedding_report(embedding, &report);
+        status = orb_uv(embedding, ORB_CHART_DEFAULT, room, NULL, &error);
+    }
+    if (status == ORB_OK && report.orbifold_euler > 0)
+        status = orb_whole_sphere(embedding, room, NULL, &error);
+    orb_embedding_free(embedding);
+    return status;
+}
+
+static void fail_each(sample_mesh mesh, const char *signature, int32_t k, const int32_t *cones) {
+    double *room = calloc(6 * (size_t)mesh.n_triangles + 3 * (size_t)mesh.n_vertices, sizeof *room);
+    orb_request request = orb_request_default();
+    request.signature = signature;
+    request.n_cones = k;
+    request.cones = cones;
+    CHECK(use_everything(&mesh, &request, room) == ORB_OK);
+    long survived = 0, reported = 0;
+    for (long n = 0;; n++) {
+        allocations = 0;
+        failing = n;
+        orb_status status = use_everything(&mesh, &request, room);
+        failing = -1;
+        if (allocations <= n)
+            break; /* the run ended before its n-th allocation */
+        CHECK(status == ORB_OK || status == ORB_OUT_OF_MEMORY);
+        survived += status == ORB_OK;
+        reported += status == ORB_OUT_OF_MEMORY;
+        if (check_failures)
+            break;
+    }
+    CHECK(reported > 50);
+    CHECK(survived * 4 < reported);
+    free(room);
+    sample_free(&mesh);
+}
+
+TEST(out_of_memory_in_the_plane) { fail_each(sample_icosphere(1), "442", 3, (int32_t[]){0, 14, 30}); }
+TEST(out_of_memory_with_a_modulus) { fail_each(sample_icosphere(1), "2222", 4, (int32_t[]){0, 14, 30, 3}); }
+TEST(out_of_memory_on_the_sphere) { fail_each(sample_icosphere(1), "432", 3, (int32_t[]){0, 14, 30}); }
+TEST(out_of_memory_with_two_cones) { fail_each(sample_icosphere(1), "33", 2, (int32_t[]){0, 30}); }
+TEST(out_of_memory_in_the_hyperbolic_plane) { fail_each(sample_icosphere(1), "237", 3, (int32_t[]){0, 14, 30}); }
+TEST(out_of_memory_on_a_refined_mesh) { fail_each(sample_cube(), "22222", 5, (int32_t[]){0, 6, 1, 7, 2}); }
