@@ -27,7 +27,7 @@ say() { echo "suitesparse: $*"; }
 die() { echo "suitesparse: error: $*" >&2; exit 1; }
 
 # What the result depends on besides the sources, which have their checksums.
-stamp_key() { { cat "$here/suitesparse.sh" "$here/suitesparse.sha256" "$here/metis.patch"; $cc --version; } | sha256sum; }
+stamp_key() { { cat "$here/suitesparse.sh" "$here/suitesparse.sha256" "$here"/*.patch; $cc --version; } | sha256sum; }
 
 # One deb-src line for each Debian repository in apt's configuration, whichever syntax it is written in
 # (apt itself reads it).  Before the first apt-get update apt does not know origins; then the paths speak.
@@ -110,7 +110,12 @@ unpack() {
         tar -xf "$work/download/$package"_*.orig.tar.* -C "$work/$package" --strip-components=1 \
             --exclude='*/GraphBLAS/*' --exclude='*/Demo/*' --exclude='*/MATLAB/*' --exclude='*/Tcov/*'
     done
-    [ -d "$work/suitesparse/CHOLMOD/Utility" ] || patch -s -d "$work" -p1 <"$here/metis.patch"
+    if [ -d "$work/suitesparse/CHOLMOD/SuiteSparse_metis" ]; then
+        patch -s -d "$work/suitesparse/CHOLMOD/SuiteSparse_metis" -p1 <"$here/metis.patch"
+    else
+        patch -s -d "$work/metis" -p1 <"$here/metis.patch"
+        patch -s -d "$work" -p1 <"$here/suitesparse5.patch"
+    fi
 }
 
 # Prints one compilation a line: object, source, flags; all relative to $work.
@@ -118,9 +123,9 @@ compilations() (
     cd "$work"
     local s=suitesparse m=metis modules module file variant variants="INT LONG" includes=""
     for module in SuiteSparse_config {AMD,COLAMD,CAMD,CCOLAMD,CHOLMOD}/Include CHOLMOD; do includes+=" -I$s/$module"; done
-    if [ -d $s/CHOLMOD/Utility ]; then      # SuiteSparse 6 and later bring a METIS of their own, mended,
-        variants="INT"                      # and two files where there was one, compiled for each integer
-        includes+=" -I$s/CHOLMOD/SuiteSparse_metis/include"
+    if [ -d $s/CHOLMOD/SuiteSparse_metis ]; then   # SuiteSparse 6 and later have a METIS of their own,
+        variants="INT"                             # and two files where there was one, compiled for each integer
+        for module in include libmetis GKlib; do includes+=" -I$s/CHOLMOD/SuiteSparse_metis/$module"; done
     else
         includes+=" -I$m/include"
         for file in $m/GKlib/*.c $m/libmetis/*.c; do
