@@ -55,7 +55,7 @@ want_python() {
     for module; do want "python3-$module"; done
 }
 
-# libegl1 and libgl1: Blender looks for them while it starts, its package does not depend on both.
+# Blender 4 and 5 look for libegl1 and libgl1 while they start; the package does not depend on both.
 want_blender() {
     [ -z "$blender" ] || return 0
     command -v blender >/dev/null || { want blender; want libegl1; want libgl1; }
