@@ -1,13 +1,61 @@
 /* CHOLMOD, wrapped. SPDX-License-Identifier: GPL-3.0-or-later
  *
- * The int64 interface throughout: measured within noise of the int32 one, and it has no size at which it ends. */
+ * CHOLMOD comes twice, with indices of 32 and of 64 bits. The narrow one is faster (docs/decisions.md) and is tried first;
+ * where it says that a problem is too large for its indices, the wide one takes over. */
 #include "cholesky.h"
 
 #include <cholmod.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* The two interfaces, under one set of signatures. */
+typedef struct interface {
+    int (*start)(cholmod_common *);
+    int (*finish)(cholmod_common *);
+    cholmod_sparse *(*allocate_sparse)(size_t, size_t, size_t, int, int, int, int, cholmod_common *);
+    int (*free_sparse)(cholmod_sparse **, cholmod_common *);
+    int (*free_dense)(cholmod_dense **, cholmod_common *);
+    int (*free_factor)(cholmod_factor **, cholmod_common *);
+    cholmod_dense *(*ensure_dense)(cholmod_dense **, size_t, size_t, size_t, int, cholmod_common *);
+    int (*factorize)(cholmod_sparse *, cholmod_factor *, cholmod_common *);
+    int (*solve2)(int, cholmod_factor *, cholmod_dense *, cholmod_sparse *, cholmod_dense **, cholmod_sparse **,
+                  cholmod_dense **, cholmod_dense **, cholmod_common *);
+    cholmod_factor *(*analyze)(cholmod_sparse *, void *, cholmod_common *);
+    int (*amd)(cholmod_sparse *, void *, cholmod_common *);
+    int (*metis)(cholmod_sparse *, void *, cholmod_common *);
+    size_t index_size;
+} interface;
+
+static cholmod_factor *analyze_narrow(cholmod_sparse *matrix, void *order, cholmod_common *common) {
+    return cholmod_analyze_p(matrix, order, NULL, 0, common);
+}
+static cholmod_factor *analyze_wide(cholmod_sparse *matrix, void *order, cholmod_common *common) {
+    return cholmod_l_analyze_p(matrix, order, NULL, 0, common);
+}
+static int amd_narrow(cholmod_sparse *matrix, void *order, cholmod_common *common) {
+    return cholmod_amd(matrix, NULL, 0, order, common);
+}
+static int amd_wide(cholmod_sparse *matrix, void *order, cholmod_common *common) {
+    return cholmod_l_amd(matrix, NULL, 0, order, common);
+}
+static int metis_narrow(cholmod_sparse *matrix, void *order, cholmod_common *common) {
+    return cholmod_metis(matrix, NULL, 0, 1, order, common);
+}
+static int metis_wide(cholmod_sparse *matrix, void *order, cholmod_common *common) {
+    return cholmod_l_metis(matrix, NULL, 0, 1, order, common);
+}
+
+static const interface interfaces[2] = {
+    {cholmod_start, cholmod_finish, cholmod_allocate_sparse, cholmod_free_sparse, cholmod_free_dense,
+     cholmod_free_factor, cholmod_ensure_dense, cholmod_factorize, cholmod_solve2, analyze_narrow, amd_narrow,
+     metis_narrow, sizeof(int32_t)},
+    {cholmod_l_start, cholmod_l_finish, cholmod_l_allocate_sparse, cholmod_l_free_sparse, cholmod_l_free_dense,
+     cholmod_l_free_factor, cholmod_l_ensure_dense, cholmod_l_factorize, cholmod_l_solve2, analyze_wide, amd_wide,
+     metis_wide, sizeof(SuiteSparse_long)},
+};
+
 struct orb_cholesky {
+    const interface *call;
     cholmod_common common;
     cholmod_sparse *matrix; /* the pattern, with room for values */
     cholmod_factor *factor;
@@ -21,56 +69,66 @@ static orb_status translate(const cholmod_common *common, orb_error *error) {
     return error_set(error, ORB_LINEAR_SOLVER, "CHOLMOD failed with status %d", common->status);
 }
 
-static void start(cholmod_common *common) {
-    cholmod_l_start(common);
+static void start(const interface *call, cholmod_common *common) {
+    call->start(common);
     common->print = 0;
     common->try_catch = 1; /* no messages through an error handler: the status is looked at */
 }
 
-static cholmod_sparse *copy_pattern(const orb_pattern *pattern, int xtype, cholmod_common *common) {
+/* Index k of an array of the interface's integers. */
+static void put(const interface *call, void *array, size_t k, int64_t value) {
+    if (call->index_size == sizeof(int32_t))
+        ((int32_t *)array)[k] = (int32_t)value;
+    else
+        ((SuiteSparse_long *)array)[k] = value;
+}
+
+static cholmod_sparse *copy_pattern(const interface *call, const orb_pattern *pattern, int xtype,
+                                    cholmod_common *common) {
     size_t n = (size_t)pattern->n, entries = (size_t)pattern->column[n];
-    cholmod_sparse *matrix = cholmod_l_allocate_sparse(n, n, entries, 1, 1, -1, xtype, common);
+    cholmod_sparse *matrix = call->allocate_sparse(n, n, entries, 1, 1, -1, xtype, common);
     if (!matrix)
         return NULL;
-    SuiteSparse_long *column = matrix->p, *row = matrix->i;
     for (size_t j = 0; j <= n; j++)
-        column[j] = pattern->column[j];
+        put(call, matrix->p, j, pattern->column[j]);
     for (size_t e = 0; e < entries; e++)
-        row[e] = pattern->row[e];
+        put(call, matrix->i, e, pattern->row[e]);
     return matrix;
 }
 
-orb_status cholesky_order(const orb_pattern *pattern, orb_ordering ordering, int32_t *permutation, orb_error *error) {
+/* *too_large: the interface's indices do not suffice. */
+static orb_status order_with(const interface *call, const orb_pattern *pattern, orb_ordering ordering,
+                             int32_t *permutation, bool *too_large, orb_error *error) {
     cholmod_common common;
-    start(&common);
+    start(call, &common);
     size_t n = (size_t)pattern->n;
-    orb_status status = ORB_OK;
-    SuiteSparse_long *order = malloc((n + 1) * sizeof *order);
-    cholmod_sparse *matrix = copy_pattern(pattern, CHOLMOD_PATTERN, &common);
-    if (!order || !matrix) {
-        status = error_memory(error);
-        goto done;
+    orb_status status = error_memory(error);
+    void *order = malloc((n + 1) * call->index_size);
+    cholmod_sparse *matrix = copy_pattern(call, pattern, CHOLMOD_PATTERN, &common);
+    if (order && matrix) {
+        int fine = (ordering == ORDERING_METIS ? call->metis : call->amd)(matrix, order, &common);
+        status = fine && common.status >= 0 ? ORB_OK : translate(&common, error);
     }
-    int fine = ordering == ORDERING_METIS ? cholmod_l_metis(matrix, NULL, 0, 1, order, &common)
-                                          : cholmod_l_amd(matrix, NULL, 0, order, &common);
-    if (!fine || common.status < 0) {
-        status = translate(&common, error);
-        goto done;
-    }
-    for (size_t k = 0; k < n; k++)
-        permutation[k] = (int32_t)order[k];
-done:
+    *too_large = common.status == CHOLMOD_TOO_LARGE;
+    for (size_t k = 0; k < n && status == ORB_OK; k++)
+        permutation[k] = call->index_size == sizeof(int32_t) ? ((int32_t *)order)[k]
+                                                             : (int32_t)((SuiteSparse_long *)order)[k];
     free(order);
-    cholmod_l_free_sparse(&matrix, &common);
-    cholmod_l_finish(&common);
+    call->free_sparse(&matrix, &common);
+    call->finish(&common);
     return status;
 }
 
-orb_status cholesky_analyze(const orb_pattern *pattern, const int32_t *permutation, bool is_complex,
-                            orb_cholesky **result, orb_error *error) {
-    *result = NULL;
+orb_status cholesky_order(const orb_pattern *pattern, orb_ordering ordering, int32_t *permutation, orb_error *error) {
+    bool too_large = false;
+    orb_status status = order_with(&interfaces[0], pattern, ordering, permutation, &too_large, error);
+    return too_large ? order_with(&interfaces[1], pattern, ordering, permutation, &too_large, error) : status;
+}
+
+static orb_status analyze_with(const interface *call, const orb_pattern *pattern, const int32_t *permutation,
+                               bool is_complex, orb_cholesky **result, bool *too_large, orb_error *error) {
     size_t n = (size_t)pattern->n;
-    SuiteSparse_long *order = malloc((n + 1) * sizeof *order);
+    void *order = malloc((n + 1) * call->index_size);
     orb_cholesky *cholesky = calloc(1, sizeof *cholesky);
     orb_status status = error_memory(error);
     if (!cholesky) {
@@ -78,19 +136,21 @@ orb_status cholesky_analyze(const orb_pattern *pattern, const int32_t *permutati
         return status;
     }
     cholmod_common *common = &cholesky->common;
-    start(common);
+    cholesky->call = call;
+    cholesky->is_complex = is_complex;
+    start(call, common);
     if (!order)
         goto done;
     common->supernodal = CHOLMOD_SUPERNODAL;
     common->nmethods = 1;
     common->method[0].ordering = CHOLMOD_GIVEN;
     common->postorder = 1;
-    cholesky->is_complex = is_complex;
     for (size_t k = 0; k < n; k++)
-        order[k] = permutation[k];
-    cholesky->matrix = copy_pattern(pattern, is_complex ? CHOLMOD_COMPLEX : CHOLMOD_REAL, common);
+        put(call, order, k, permutation[k]);
+    cholesky->matrix = copy_pattern(call, pattern, is_complex ? CHOLMOD_COMPLEX : CHOLMOD_REAL, common);
     if (cholesky->matrix)
-        cholesky->factor = cholmod_l_analyze_p(cholesky->matrix, order, NULL, 0, common);
+        cholesky->factor = call->analyze(cholesky->matrix, order, common);
+    *too_large = common->status == CHOLMOD_TOO_LARGE;
     if (!cholesky->factor || common->status < 0) {
         status = translate(common, error);
         goto done;
@@ -104,13 +164,27 @@ done:
     return status;
 }
 
+orb_status cholesky_analyze(const orb_pattern *pattern, const int32_t *permutation, bool is_complex,
+                            orb_cholesky **result, orb_error *error) {
+    bool too_large = false;
+    *result = NULL;
+    orb_status status = analyze_with(&interfaces[0], pattern, permutation, is_complex, result, &too_large, error);
+    return too_large ? cholesky_analyze_wide(pattern, permutation, is_complex, result, error) : status;
+}
+
+orb_status cholesky_analyze_wide(const orb_pattern *pattern, const int32_t *permutation, bool is_complex,
+                                 orb_cholesky **result, orb_error *error) {
+    bool too_large = false;
+    *result = NULL;
+    return analyze_with(&interfaces[1], pattern, permutation, is_complex, result, &too_large, error);
+}
+
 orb_status cholesky_factor(orb_cholesky *cholesky, const double *values, bool *positive, orb_error *error) {
     cholmod_common *common = &cholesky->common;
     cholmod_sparse *matrix = cholesky->matrix;
-    SuiteSparse_long entries = ((SuiteSparse_long *)matrix->p)[matrix->ncol];
-    memcpy(matrix->x, values, (size_t)entries * (cholesky->is_complex ? 2 : 1) * sizeof(double));
+    memcpy(matrix->x, values, matrix->nzmax * (cholesky->is_complex ? 2 : 1) * sizeof(double));
     *positive = false;
-    cholmod_l_factorize(matrix, cholesky->factor, common);
+    cholesky->call->factorize(matrix, cholesky->factor, common);
     if (common->status == CHOLMOD_NOT_POSDEF)
         return ORB_OK;
     if (common->status != CHOLMOD_OK)
@@ -120,21 +194,19 @@ orb_status cholesky_factor(orb_cholesky *cholesky, const double *values, bool *p
 }
 
 orb_status cholesky_solve(orb_cholesky *cholesky, const double *b, int32_t n_right, double *x, orb_error *error) {
+    const interface *call = cholesky->call;
     cholmod_common *common = &cholesky->common;
-    size_t n = cholesky->factor->n, parts = cholesky->is_complex ? 2 : 1;
-    cholmod_dense right = {.nrow = n, .ncol = (size_t)n_right, .nzmax = n * (size_t)n_right, .d = n,
-                           .x = (void *)(uintptr_t)b, .xtype = cholesky->is_complex ? CHOLMOD_COMPLEX : CHOLMOD_REAL,
-                           .dtype = CHOLMOD_DOUBLE};
-    int xtype = right.xtype;
-    /* cholmod_l_solve2 would make these itself, but forgets that the first failed when the second does not. */
-    if (!cholmod_l_ensure_dense(&cholesky->work_y, n, (size_t)n_right, n, xtype, common) ||
-        !cholmod_l_ensure_dense(&cholesky->work_e, (size_t)n_right, cholesky->factor->maxesize, (size_t)n_right, xtype,
-                                common))
+    size_t n = cholesky->factor->n, columns = (size_t)n_right, parts = cholesky->is_complex ? 2 : 1;
+    int xtype = cholesky->is_complex ? CHOLMOD_COMPLEX : CHOLMOD_REAL;
+    cholmod_dense right = {.nrow = n, .ncol = columns, .nzmax = n * columns, .d = n, .x = (void *)(uintptr_t)b,
+                           .xtype = xtype, .dtype = CHOLMOD_DOUBLE};
+    /* solve2 would make these itself, but forgets that the first failed when the second does not. */
+    if (!call->ensure_dense(&cholesky->work_y, n, columns, n, xtype, common) ||
+        !call->ensure_dense(&cholesky->work_e, columns, cholesky->factor->maxesize, columns, xtype, common) ||
+        !call->solve2(CHOLMOD_A, cholesky->factor, &right, NULL, &cholesky->solution, NULL, &cholesky->work_y,
+                      &cholesky->work_e, common))
         return translate(common, error);
-    if (!cholmod_l_solve2(CHOLMOD_A, cholesky->factor, &right, NULL, &cholesky->solution, NULL, &cholesky->work_y,
-                          &cholesky->work_e, common))
-        return translate(common, error);
-    memcpy(x, cholesky->solution->x, n * (size_t)n_right * parts * sizeof(double));
+    memcpy(x, cholesky->solution->x, n * columns * parts * sizeof(double));
     return ORB_OK;
 }
 
@@ -144,11 +216,11 @@ void cholesky_free(orb_cholesky *cholesky) {
     if (!cholesky)
         return;
     cholmod_common *common = &cholesky->common;
-    cholmod_l_free_dense(&cholesky->solution, common);
-    cholmod_l_free_dense(&cholesky->work_y, common);
-    cholmod_l_free_dense(&cholesky->work_e, common);
-    cholmod_l_free_factor(&cholesky->factor, common);
-    cholmod_l_free_sparse(&cholesky->matrix, common);
-    cholmod_l_finish(common);
+    cholesky->call->free_dense(&cholesky->solution, common);
+    cholesky->call->free_dense(&cholesky->work_y, common);
+    cholesky->call->free_dense(&cholesky->work_e, common);
+    cholesky->call->free_factor(&cholesky->factor, common);
+    cholesky->call->free_sparse(&cholesky->matrix, common);
+    cholesky->call->finish(common);
     free(cholesky);
 }

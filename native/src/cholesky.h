@@ -19,6 +19,10 @@ orb_status cholesky_order(const orb_pattern *pattern, orb_ordering ordering, int
 orb_status cholesky_analyze(const orb_pattern *pattern, const int32_t *permutation, bool is_complex,
                             orb_cholesky **cholesky, orb_error *error);
 
+/* The same with indices of 64 bits from the start, which cholesky_analyze turns to by itself where it has to. */
+orb_status cholesky_analyze_wide(const orb_pattern *pattern, const int32_t *permutation, bool is_complex,
+                                 orb_cholesky **cholesky, orb_error *error);
+
 /* Numerical factorisation of values[column[n]] (complex: interleaved, twice as many doubles). A matrix that is not
  * positive definite is no error: *positive says so, and the factor cannot be used. */
 orb_status cholesky_factor(orb_cholesky *cholesky, const double *values, bool *positive, orb_error *error);

@@ -16,6 +16,10 @@
 #include <complex.h>
 #include <stdbool.h>
 
+#ifndef CMPLX /* C11 has it; glibc hides it from clang */
+#define CMPLX(x, y) __builtin_complex((double)(x), (double)(y))
+#endif
+
 typedef struct orb_geometry orb_geometry;
 
 typedef struct orb_point {
