@@ -18,7 +18,7 @@
  * positively oriented, both sides of every seam equally long, the angles around every vertex those of the
  * orbifold, and the orbifold's area. These four make the map a bijection.
  *
- * The library keeps no global state, prints nothing, never exits and never writes to an array it is given; arrays
+ * The library keeps no global state (but one lock around BLAS), prints nothing, never exits and never writes to an array it is given; arrays
  * of the caller are not needed after a call returns. Functions may be called from several threads at once as long
  * as each has its own objects. Angles are in radians. Vertices and triangles are counted from 0. */
 #ifndef ORBIFOLD_H
@@ -195,7 +195,8 @@ ORB_API orb_status orb_uv(const orb_embedding *embedding, orb_chart chart, doubl
 ORB_API orb_status orb_whole_sphere(const orb_embedding *embedding, double *positions, int64_t *mended,
                                     orb_error *error);
 
-/* The same computation on a thread of the library's own. The arrays of mesh and request are copied. */
+/* The same computation on a thread of the library's own. The arrays of mesh and request are copied; the request's
+ * progress is not called: poll instead. */
 typedef struct orb_job orb_job;
 ORB_API orb_status orb_job_start(const orb_mesh_arrays *mesh, const orb_request *request, orb_job **job,
                                  orb_error *error);

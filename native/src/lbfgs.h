@@ -9,7 +9,7 @@
 
 #include "error.h"
 
-enum { LBFGS_PAIRS = 8 };
+enum { LBFGS_PAIRS = 5 };
 
 typedef struct orb_lbfgs {
     int32_t n;                            /* tangent vectors have n complex entries */
