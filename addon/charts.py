@@ -14,7 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 CURVATURE = {"spherical": 1, "euclidean": 0, "hyperbolic": -1}
+POLE = 1e-9  # latitudes this near to a pole's, in uv, are the pole
 SAMPLE = 5000  # triangles that the constants are fitted to
+DISCONTINUOUS = ("equirectangular", "octahedral")
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,38 @@ def chart_of(name: str, geometry: str, points: np.ndarray, uv: np.ndarray) -> Ch
         axes = _axes(points, uv)
         return Chart(lambda corners: _to_equirectangular(corners, axes), lambda uv: _from_equirectangular(uv, axes))
     return _affine_chart(name == "klein", CURVATURE[geometry], points, uv)
+
+
+def joined(name: str, uv: np.ndarray, points: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """`uv` (m, 3, 2) of the corners `points` (m, 3, 3) with each face (m,) on one side of a discontinuity of the chart,
+    that of its first corner; it may then leave the unit square. Faces about one of the octahedron's corners, where a
+    fold ends, stay as they are if this would flip them."""
+    _, first, face = np.unique(faces, return_index=True, return_inverse=True)
+    face = face.ravel()
+    home, given, uv = first[face], uv, uv.copy()
+    if name == "equirectangular":
+        uv[..., 0] -= np.round(uv[..., 0] - uv[home, :1, 0])
+    elif name == "octahedral":
+        start = np.broadcast_to(points[home, :1], points.shape)
+        low = (start[..., 2] < 0) | (points[..., 2] < 0)
+        uv[low] = _unfolded(start[low], points[low], uv[low])
+        flipped = np.bincount(face, (_areas(uv) <= 0) & (_areas(given) > 0)) > 0
+        uv[flipped[face]] = given[flipped[face]]
+    return uv
+
+
+def _areas(uv: np.ndarray) -> np.ndarray:
+    """(m,) twice the areas of triangles in the plane, negative where they are flipped."""
+    a, b = uv[:, 1] - uv[:, 0], uv[:, 2] - uv[:, 0]
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+
+
+def without_poles(name: str, uv: np.ndarray) -> np.ndarray:
+    """`uv` (..., 2) for comparing: a pole has every longitude, so it is given one."""
+    if name != "equirectangular":
+        return uv
+    pole = np.abs(uv[..., 1] - 0.5) > 0.5 - POLE
+    return np.stack([np.where(pole, 0.5, uv[..., 0]), uv[..., 1]], -1)
 
 
 # ------------------------------------------------------------------------------------------ the complex chart
@@ -86,6 +120,24 @@ def _from_octahedral(uv: np.ndarray) -> np.ndarray:
     y = np.where(n >= 0, b, np.copysign(1 - np.abs(a), b))
     points = np.stack([x, y, n], -1)
     return points / np.linalg.norm(points, axis=-1, keepdims=True)
+
+
+def _unfolded(start: np.ndarray, end: np.ndarray, uv: np.ndarray) -> np.ndarray:
+    """`uv` (k, 2) of the points `end` (k, 3), continued across the folds between `start` (k, 3) and them. The folds are
+    the lower halves of the circles x = 0 and y = 0, the sides of the square; a half turn about the middle of a side
+    takes one bank of its fold to the other."""
+    crosses = np.signbit(start[:, :2]) != np.signbit(end[:, :2])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        part = np.where(crosses, np.nan_to_num(start[:, :2] / (start[:, :2] - end[:, :2]), nan=0.5), 0.0)
+    there = start[:, None] + part[..., None] * (end - start)[:, None]  # (k, 2, 3) where x = 0 and where y = 0
+    folded = crosses & (there[..., 2] < 0)
+    twice_middle = np.ones((len(uv), 2, 2))
+    twice_middle[:, 0, 1] = 2 * (there[:, 0, 1] > 0)
+    twice_middle[:, 1, 0] = 2 * (there[:, 1, 0] > 0)
+    every = np.arange(len(uv))
+    for axis in np.argsort(-part, axis=1).T:  # the last crossing first
+        uv = np.where(folded[every, axis][:, None], twice_middle[every, axis] - uv, uv)
+    return uv
 
 
 def _axes(points: np.ndarray, uv: np.ndarray) -> np.ndarray:

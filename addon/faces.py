@@ -1,17 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Keeps quads and n-gons whole in a layout that was computed on their triangles.
+"""Keeps faces whole in a layout that was computed on their triangles.
 
 Blender has one texture coordinate for each corner of a face, so no seam may run along a diagonal inside one. Where
 the cut does, the face's triangles are put together again: the layout is only defined up to the orbifold's group, and
 the isometry that carries one copy of the diagonal to the other moves a triangle to where the face continues. The
 seam then runs around the face instead of through it. (Isometries as in native/src/geometry.h: z is the complex
 chart, z -> (z - p) / (1 + K conj(p) z) takes p to the origin.)
+
+Two charts of the sphere have a discontinuity of their own, a date line or folds. No face crosses it either: a face
+stays on the side of its first corner and may stick out of the unit square.
 """
 
 from __future__ import annotations
 
 import cmath
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,6 +24,8 @@ from .core import Result
 
 FITTED = ("conformal", "stereographic")  # charts that fill the unit square
 SAME = 1e-7  # two placings of an edge are one below this part of its length; neighbouring copies differ by far more
+APART = 1e-6  # of the unit square: texture coordinates of an edge's two sides that differ by more are a fold
+APART = 1e-6  # of the unit square: two sides of a fold
 
 
 @dataclass(frozen=True)
@@ -35,6 +40,11 @@ class FaceLayout:
 
 
 def layout_of(result: Result, arrays: MeshArrays, chart: str) -> FaceLayout:
+    layout = _without_cut_faces(result, arrays, chart)
+    return _without_folded_faces(layout, arrays) if chart in charts.DISCONTINUOUS else layout
+
+
+def _without_cut_faces(result: Result, arrays: MeshArrays, chart: str) -> FaceLayout:
     uv = result.uv_chart(chart)
     placed = result.embedding[result.cut_triangles]
     groups = _cut_faces(result.seams, arrays)
@@ -56,6 +66,22 @@ def layout_of(result: Result, arrays: MeshArrays, chart: str) -> FaceLayout:
     for corners in (uv, placed):
         corners[touched] = _first_of_each(arrays.loops[touched], corners[touched])
     return FaceLayout(chart, _fitted(uv) if chart in FITTED else uv, placed, seams, len(groups))
+
+
+def _without_folded_faces(layout: FaceLayout, arrays: MeshArrays) -> FaceLayout:
+    """In a chart that is not continuous: no face crosses its fold or date line, and the edges along it are seams too."""
+    corners = np.empty((arrays.n_loops, 2))
+    corners[arrays.loops] = charts.joined(layout.chart, layout.uv, layout.embedding, arrays.polygons)
+    uv = corners[arrays.loops]
+    n = len(arrays.vertices)
+    half = _half_edges(arrays.triangles).reshape(-1, 2)
+    sides = np.argsort(_keys(half, n), kind="stable").reshape(-1, 2)  # closed: each edge has two sides
+    seen = charts.without_poles(layout.chart, uv)
+    start, end = seen.reshape(-1, 2)[sides], np.roll(seen, -1, axis=1).reshape(-1, 2)[sides]
+    apart = np.abs(np.concatenate([start[:, 0] - end[:, 1], end[:, 0] - start[:, 1]], -1)).max(-1) > APART
+    folds = half[sides[apart, 0]]
+    folds = folds[~np.isin(_keys(folds, n), _keys(layout.seams, n))]
+    return replace(layout, uv=uv, seams=np.concatenate([layout.seams, folds.astype(np.int32)]))
 
 
 def _fitted(uv: np.ndarray) -> np.ndarray:

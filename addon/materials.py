@@ -36,7 +36,7 @@ def make_material(
     texture = _node(tree, "ShaderNodeTexImage", 0)
     coordinates = _node(tree, "ShaderNodeUVMap", -200)
     coordinates.uv_map = blender_mesh.UV_MAP
-    texture.extension = "REPEAT" if layout.chart == "periodic" else "EXTEND"
+    texture.extension = "REPEAT" if layout.chart in pattern.REPEATING else "EXTEND"
     texture.image = _image(name, pattern.image(result, layout, size))
     shader.inputs["Roughness"].default_value = 0.6
     tree.links.new(coordinates.outputs["UV"], texture.inputs["Vector"])

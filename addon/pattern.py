@@ -25,6 +25,7 @@ RINGS = 20.0  # per square root of the tile's area
 SOFTNESS = 1.5  # of the minimum, in rings
 TAIL = 9.0  # orbit points farther than the nearest by this many softnesses are left out: exp(-9) of a ring's phase
 BACKGROUND = (0.5, 0.5, 0.5)
+REPEATING = ("periodic", "equirectangular")  # charts in which an image has to repeat
 
 
 def image(result: Result, layout: FaceLayout, size: int = 1024) -> np.ndarray:
@@ -38,7 +39,7 @@ def image(result: Result, layout: FaceLayout, size: int = 1024) -> np.ndarray:
     pixels = np.ones((size, size, 4), np.float32)
     pixels[..., :3] = BACKGROUND
     blocks = np.ones((size // BLOCK, size // BLOCK), bool)
-    if layout.chart != "periodic":
+    if layout.chart not in REPEATING:
         blocks = _covered_blocks(layout.uv, size // BLOCK)
     waiting = [(y, x, BLOCK) for y, x in (np.argwhere(blocks) * BLOCK).tolist()]
     while waiting:
