@@ -9,6 +9,12 @@ from bpy.props import BoolProperty, EnumProperty
 from .. import blender_mesh, core, faces, materials, sphere_map
 from .embedding import EmbeddingOperator, mesh_problem
 
+PERIODIC = (
+    "For repeating images: the unit square is a period of the layout. An image is seamless on the mesh when turning it "
+    "about its corner leaves it as it is: by a quarter turn for 442, by half a turn for 2222; by a third for 333 and a "
+    "sixth for 632, there with the square drawn as a rectangle 1 : 1.73"
+)
+
 
 def unwrap_problem(context: bpy.types.Context) -> str | None:
     problem = mesh_problem(context)
@@ -30,7 +36,7 @@ class UV_OT_orbifold_unwrap(EmbeddingOperator, bpy.types.Operator):
         name="Layout",
         description="How the plane is laid out in the UV editor",
         items=(
-            ("periodic", "Periodic", "A repeating image is seamless on the mesh: its square is a period of the layout"),
+            ("periodic", "Periodic", PERIODIC),
             ("conformal", "Conformal", "No shear; the layout fills the unit square"),
         ),
     )

@@ -18,9 +18,9 @@ class MESH_MT_orbifold_signatures(bpy.types.Menu):
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        count = len(context.active_object.data.orbifold.cones)
+        orders = [cone.order for cone in context.active_object.data.orbifold.cones]
         try:
-            offers = core.suggest_signatures(count or 3)
+            offers = core.suggest_signatures(len(orders) or 3)
         except core.OrbifoldError as error:
             layout.label(text=str(error), icon="ERROR")
             return
@@ -36,6 +36,10 @@ class MESH_MT_orbifold_signatures(bpy.types.Menu):
                 for offer in fitting:
                     entry = column.operator("mesh.orbifold_set_signature", text=offer.signature)
                     entry.signature = offer.signature
+        if orders:  # any order can be typed in the list, which writes it into the signature at once
+            layout.separator()
+            own = core.format_signature(orders)
+            layout.operator("mesh.orbifold_set_signature", text=f"Orders of the List: {own}").signature = own
 
 
 def draw_unwrap_entry(self, _context: bpy.types.Context) -> None:
