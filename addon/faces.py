@@ -69,7 +69,7 @@ def _without_cut_faces(result: Result, arrays: MeshArrays, chart: str) -> FaceLa
 
 
 def _without_folded_faces(layout: FaceLayout, arrays: MeshArrays) -> FaceLayout:
-    """In a chart that is not continuous: no face crosses its fold or date line, and the edges along it are seams too."""
+    """In a chart that is not continuous: no face crosses its fold or date line; the edges along it are seams too."""
     corners = np.empty((arrays.n_loops, 2))
     corners[arrays.loops] = charts.joined(layout.chart, layout.uv, layout.embedding, arrays.polygons)
     uv = corners[arrays.loops]

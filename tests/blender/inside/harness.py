@@ -174,11 +174,11 @@ def digest(obj: bpy.types.Object) -> str:
     for layer in mesh.uv_layers:
         found.update(layer.name.encode() + bytes([layer.active]))
         add(layer.data, "uv", np.float32, 2)
-    for attribute in mesh.attributes:
+    for attribute in sorted(mesh.attributes, key=lambda attribute: attribute.name):  # Blender 5 changes their sequence
         if attribute.domain == "POINT" and attribute.data_type == "INT":
             found.update(attribute.name.encode())
             add(attribute.data, "value", np.int32, 1)
-    names = [a.name for a in mesh.attributes if not a.name.startswith(".")]
+    names = sorted(a.name for a in mesh.attributes if not a.name.startswith("."))
     found.update(repr(names).encode())
     if mesh.shape_keys is not None:
         for key in mesh.shape_keys.key_blocks:

@@ -32,11 +32,10 @@ def state() -> dict:
 before = state()
 
 
-def check_the_zip_has_a_library_and_a_manifest():
+def check_a_library_and_a_manifest_were_installed():
     folder = Path(enable().__file__).parent
     assert (folder / "core" / "liborbifold.so").is_file()
     assert (folder / "blender_manifest.toml").is_file()
-    assert not list(folder.rglob("*.pyc"))
 
 
 def check_enabling_adds_operators_menus_and_the_property():
