@@ -12,7 +12,7 @@ static const double gradient_accepted = 1e-9;   /* the least that counts as conv
 static const double energy_noise = 1e-13;       /* relative: predicted decreases below this are noise */
 static const double sufficient_decrease = 1e-4; /* Armijo */
 static const double slow = 0.8;                 /* a kept factor is renewed when the gradient falls by less */
-enum { MOST_STEPS = 300, MOST_HALVINGS = 40, MOST_STALLS = 2 };
+enum { MOST_STEPS = 300, MOST_HALVINGS = 40, MOST_STALLS = 2, MOST_FRUITLESS = 40 };
 
 typedef struct minimiser {
     const orb_problem *problem;
@@ -235,13 +235,15 @@ static orb_status advance(minimiser *work, bool *stuck, orb_error *error) {
 static orb_status iterate(minimiser *work, orb_monitor *monitor, orb_error *error) {
     bool renew = true;
     double first = work->relative, best = work->relative;
-    int stalls = 0;
-    while (work->relative > gradient_goal && work->minimum->iterations < MOST_STEPS && stalls <= MOST_STALLS) {
+    int stalls = 0, fruitless = 0; /* steps, and refinements, since the gradient last halved */
+    while (work->relative > gradient_goal && work->minimum->iterations < MOST_STEPS &&
+           stalls <= MOST_STALLS && fruitless <= MOST_FRUITLESS) {
         double done = log(first / work->relative) / log(first / gradient_goal);
         orb_status status = monitor_report(monitor, "minimise", 0.3 + 0.6 * fmax(0, fmin(1, done)), error);
         if (status == ORB_OK && renew)
             status = factor(work, error);
         bool stuck = false, fresh = renew;
+        int32_t refinements = work->minimum->refinements;
         double before = work->relative;
         if (status == ORB_OK)
             status = advance(work, &stuck, error);
@@ -249,13 +251,35 @@ static orb_status iterate(minimiser *work, orb_monitor *monitor, orb_error *erro
             return status;
         if (stuck && fresh)
             break;
-        if (stuck && work->memory)
+        /* Below the noise, pairs of differences are mostly rounding, and may mislead. */
+        bool refined = work->minimum->refinements > refinements;
+        fruitless = work->relative < 0.5 * best ? 0 : fruitless + refined;
+        if ((stuck || (refined && fruitless % 8 == 7)) && work->memory)
             lbfgs_forget(work->memory);
         renew = stuck || !work->memory || (work->relative > slow * before && work->relative > gradient_accepted);
         stalls = work->relative < 0.5 * best ? 0 : stalls + (work->relative < gradient_accepted);
         best = fmin(best, work->relative);
     }
     return ORB_OK;
+}
+
+/* Names the vertex where the forces balance least: where a limb without a cone shrinks to nothing on the tile, that is
+ * in it. */
+static orb_status error_not_converged(const minimiser *work, orb_error *error) {
+    int32_t worst = 0;
+    double most = 0;
+    for (int32_t v = 0; v < work->problem->n_vertices; v++) {
+        double share = work->scale[v] > 0 ? cabs(work->gradient[v]) / work->scale[v] : 0;
+        if (share > most) {
+            most = share;
+            worst = v;
+        }
+    }
+    return error_set_elements(error, ORB_NOT_CONVERGED, ORB_VERTEX, &worst, 1, 1,
+                              "not converged: after %d steps the pull of the edges at vertex %d is out of balance by "
+                              "%.1e of itself: pick a cone near it, or take other weights",
+                              (int)(work->minimum->iterations + work->minimum->refinements), (int)worst,
+                              work->relative);
 }
 
 orb_status newton_minimise(const orb_problem *problem, orb_system *system, const int32_t *order, orb_point *position,
@@ -286,9 +310,7 @@ orb_status newton_minimise(const orb_problem *problem, orb_system *system, const
     minimum->energy = work.energy;
     minimum->relative_gradient = work.relative;
     if (!(work.relative <= gradient_accepted))
-        status = error_set(error, ORB_NOT_CONVERGED,
-                           "not converged: the relative gradient is %.1e after %d steps; try other cones or weights",
-                           work.relative, (int)minimum->iterations);
+        status = error_not_converged(&work, error);
     else
         memcpy(position, work.position, bytes);
 done:

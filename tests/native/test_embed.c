@@ -1,6 +1,7 @@
 /* The whole way: closed forms, independence of the cut, derivatives, errors. SPDX-License-Identifier: GPL-3.0-or-later */
 #include <complex.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "check.h"
 #include "embedding.h"
@@ -250,6 +251,52 @@ TEST(assembled_derivatives_against_finite_differences) {
     check_derivatives("237", 3);
     check_derivatives("22222", 5);
     check_derivatives("55", 2);
+}
+
+/* A tube of triangles around, closed by a vertex at either end: vertices 3 i, 3 i + 1, 3 i + 2 are ring i. */
+static sample_mesh tube(int32_t n_rings) {
+    sample_mesh mesh = sample_new(3 * n_rings + 2, 6 * n_rings);
+    int32_t first = 3 * n_rings, last = first + 1, m = 0;
+    for (int32_t v = 0; v < 3 * n_rings; v++) {
+        double angle = 2 * pi * (v % 3) / 3, point[3] = {cos(angle), sin(angle), v / 3};
+        memcpy(mesh.vertices + 3 * v, point, sizeof point);
+    }
+    memcpy(mesh.vertices + 3 * first, (double[]){0, 0, -1}, 3 * sizeof(double));
+    memcpy(mesh.vertices + 3 * last, (double[]){0, 0, n_rings}, 3 * sizeof(double));
+    for (int32_t i = 0; i < n_rings; i++)
+        for (int32_t j = 0; j < 3; j++) {
+            int32_t a = 3 * i + j, b = 3 * i + (j + 1) % 3;
+            bool ends = i == n_rings - 1;
+            int32_t lower[3] = {a, b, ends ? last : b + 3}, upper[3] = {a, b + 3, a + 3}, cap[3] = {first, b, a};
+            memcpy(mesh.triangles + 3 * m++, lower, sizeof lower);
+            if (!ends)
+                memcpy(mesh.triangles + 3 * m++, upper, sizeof upper);
+            if (i == 0)
+                memcpy(mesh.triangles + 3 * m++, cap, sizeof cap);
+        }
+    CHECK(m == mesh.n_triangles);
+    return mesh;
+}
+
+/* A limb without a cone shrinks exponentially, to less than two doubles hold: an end, and the vertex named. */
+TEST(an_endless_limb_ends) {
+    const char *const signatures[] = {"333", "332", "444"};
+    for (int i = 0; i < 3; i++)
+        for (int32_t rings = 10; rings <= 200; rings += 190) {
+            sample_mesh mesh = tube(rings);
+            int32_t cones[] = {0, 1, 2};
+            orb_embedding *embedding = NULL;
+            orb_error error;
+            orb_status status = embed(&mesh, signatures[i], 3, cones, 0.01, &embedding, &error);
+            if (rings == 10) {
+                CHECK(status == ORB_OK);
+            } else {
+                CHECK(status == ORB_NOT_CONVERGED && embedding == NULL);
+                CHECK(error.element == ORB_VERTEX && error.n_elements == 1 && error.elements[0] > 60);
+            }
+            orb_embedding_free(embedding);
+            sample_free(&mesh);
+        }
 }
 
 TEST(isolated_vertices_are_left_out) {
