@@ -7,7 +7,7 @@
 
 #include "lbfgs.h"
 
-static const double gradient_goal = 1e-12;      /* relative gradient at which to stop */
+static const double gradient_goal = 1e-11;      /* relative gradient at which to stop */
 static const double gradient_accepted = 1e-9;   /* the least that counts as converged */
 static const double energy_noise = 1e-13;       /* relative: predicted decreases below this are noise */
 static const double sufficient_decrease = 1e-4; /* Armijo */
