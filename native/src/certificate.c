@@ -5,15 +5,17 @@
 #include <stdlib.h>
 
 #include "select.h"
+#include "triangle.h"
 
 static const double pi = 3.14159265358979323846;
 static const double seam_tolerance = 1e-8;  /* of the median edge */
 static const double angle_tolerance = 1e-7; /* radians */
 static const double area_tolerance = 1e-7;  /* relative */
 
-int certificate_orientation(const orb_geometry *geometry, const orb_point corners[3]) {
+int certificate_corner(const orb_geometry *geometry, const orb_point corners[3], int *sign) {
     double best = -1;
-    int sign = 0;
+    int corner = 0;
+    *sign = 0;
     for (int k = 0; k < 3; k++) {
         double complex s = geometry_toward(geometry, corners[k], corners[(k + 1) % 3]);
         double complex t = geometry_toward(geometry, corners[k], corners[(k + 2) % 3]);
@@ -21,9 +23,16 @@ int certificate_orientation(const orb_geometry *geometry, const orb_point corner
         double score = size > 0 ? fabs(sine) / size : 0;
         if (score > best) {
             best = score;
-            sign = (sine > 0) - (sine < 0);
+            corner = k;
+            *sign = (sine > 0) - (sine < 0);
         }
     }
+    return corner;
+}
+
+int certificate_orientation(const orb_geometry *geometry, const orb_point corners[3]) {
+    int sign;
+    certificate_corner(geometry, corners, &sign);
     return sign;
 }
 
@@ -43,16 +52,17 @@ static orb_status check_orientation(orb_embedding *embedding, orb_error *error) 
         if (n_named < ORB_MAX_ELEMENTS)
             named[n_named++] = t;
         flipped++;
-        without_area += !(mesh_triangle_area(embedding->mesh, t) > 0);
+        without_area += triangle_measure(embedding->mesh, t).double_area == 0;
     }
     embedding->report.flipped = flipped;
     if (flipped == 0)
         return ORB_OK;
     if (flipped == without_area)
         return error_set_elements(error, ORB_ZERO_AREA_TRIANGLE, ORB_TRIANGLE, named, n_named, flipped,
-                                  "%lld triangles without area stay flat on the tile, first triangle %d: dissolve "
-                                  "degenerate faces, or take uniform weights",
-                                  (long long)flipped, (int)named[0]);
+                                  "%lld %s without area %s flat on the tile, first triangle %d: dissolve degenerate faces, or "
+                                  "take uniform weights",
+                                  (long long)flipped, flipped == 1 ? "triangle" : "triangles",
+                                  flipped == 1 ? "stays" : "stay", (int)named[0]);
     return error_set_elements(error, ORB_CERTIFICATE_FAILED, ORB_TRIANGLE, named, n_named, flipped,
                               "%lld triangles are flipped on the tile, first triangle %d: raise the clamp, take uniform "
                               "weights, or put many cones in the sequence of a short walk",
@@ -90,8 +100,9 @@ static orb_status check_seams(orb_embedding *embedding, orb_error *error) {
     if (embedding->report.seam_residual < seam_tolerance)
         return ORB_OK;
     return error_set_elements(error, ORB_CERTIFICATE_FAILED, ORB_EDGE, worst, 2, 1,
-                              "the two sides of the seam edge %d-%d differ by %.1e of an edge", (int)worst[0],
-                              (int)worst[1], embedding->report.seam_residual);
+                              "the two sides of the seam edge %d-%d differ by %.1e of an edge: there are more digits to the "
+                              "tile than a double has, so put the cones in the sequence of a short walk, or take fewer",
+                              (int)worst[0], (int)worst[1], embedding->report.seam_residual);
 }
 
 /* Angle sums at the vertices, and the area of all triangles. */
@@ -126,8 +137,9 @@ static orb_status check_angles(orb_embedding *embedding, double *area, orb_error
     if (embedding->report.angle_residual < angle_tolerance)
         return ORB_OK;
     return error_set_elements(error, ORB_CERTIFICATE_FAILED, ORB_VERTEX, &worst, 1, 1,
-                              "the angles around vertex %d are off by %.1e", (int)worst,
-                              embedding->report.angle_residual);
+                              "the angles around vertex %d are off by %.1e: dissolve degenerate faces near it, or pick a cone "
+                              "near it",
+                              (int)worst, embedding->report.angle_residual);
 }
 
 orb_status certificate_check(orb_embedding *embedding, orb_error *error) {
@@ -143,6 +155,6 @@ orb_status certificate_check(orb_embedding *embedding, orb_error *error) {
     embedding->report.area_residual = fabs(area - expected) / expected;
     if (embedding->report.area_residual < area_tolerance)
         return ORB_OK;
-    return error_set(error, ORB_CERTIFICATE_FAILED, "the triangles' area is off by %.1e of the orbifold's",
+    return error_set(error, ORB_CERTIFICATE_FAILED, "the triangles' area is off by %.1e of the orbifold's: dissolve degenerate faces, or pick other cones",
                      embedding->report.area_residual);
 }

@@ -4,10 +4,15 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "certificate.h"
+#include "triangle.h"
+#include "vector3.h"
+
 typedef struct affine {
-    double area;          /* on the mesh, scaled */
+    double area;          /* on the mesh, scaled; 0: none to speak of, and then all else is unset */
     double tile_area;     /* in the geometry */
     double complex a, b;  /* the map y -> a y + b conj(y) from a plane holding the triangle, scaled */
+    double determinant;   /* |a|^2 - |b|^2, which for thin triangles is lost in the difference */
 } affine;
 
 /* The power of two that brings the largest side along an axis to about 1. Nothing that is measured here depends on
@@ -15,37 +20,33 @@ typedef struct affine {
 static double unit_scale(const orb_mesh *mesh) {
     double largest = 0;
     for (int32_t h = 0; h < 3 * mesh->n_triangles; h++)
-        for (int k = 0; k < 3; k++)
-            largest = fmax(largest, fabs(mesh->vertices[3 * (size_t)halfedge_to(mesh, h) + (size_t)k] -
-                                         mesh->vertices[3 * (size_t)halfedge_from(mesh, h) + (size_t)k]));
-    return largest > 0 && isfinite(largest) ? ldexp(1, largest < 0x1p-1000 ? 1000 : -ilogb(largest)) : 1;
+        for (int k = 0; k < 3; k++) /* halves, so that the difference cannot overflow */
+            largest = fmax(largest, fabs(0.5 * mesh->vertices[3 * (size_t)halfedge_to(mesh, h) + (size_t)k] -
+                                         0.5 * mesh->vertices[3 * (size_t)halfedge_from(mesh, h) + (size_t)k]));
+    return largest > 0 ? ldexp(0.5, largest < 0x1p-1000 ? 1000 : -ilogb(largest)) : 1;
 }
 
+/* The triangle's corners counted from the one where its image has the least rounding error. */
 static affine triangle_map(const orb_embedding *embedding, double scale, int32_t t) {
-    const orb_mesh *mesh = embedding->mesh;
     const orb_geometry *geometry = embedding->tile->geometry;
-    double e[2][3];
-    for (int c = 0; c < 2; c++)
-        for (int k = 0; k < 3; k++)
-            e[c][k] = scale * (mesh->vertices[3 * (size_t)mesh->triangles[3 * t + c + 1] + (size_t)k] -
-                               mesh->vertices[3 * (size_t)mesh->triangles[3 * t] + (size_t)k]);
-    double n[3] = {e[0][1] * e[1][2] - e[0][2] * e[1][1], e[0][2] * e[1][0] - e[0][0] * e[1][2],
-                   e[0][0] * e[1][1] - e[0][1] * e[1][0]};
-    affine map = {.area = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) / 2};
-    double length = sqrt(e[0][0] * e[0][0] + e[0][1] * e[0][1] + e[0][2] * e[0][2]);
-    if (!(map.area > 0) || !(length > 0))
+    triangle_shape shape = triangle_measure(embedding->mesh, t);
+    if (shape.double_area == 0)
         return (affine){0};
-    double along = (e[0][0] * e[1][0] + e[0][1] * e[1][1] + e[0][2] * e[1][2]) / length;
-    double complex from[2] = {length, CMPLX(along, 2 * map.area / length)};
     orb_point p[3];
     for (int c = 0; c < 3; c++)
         p[c] = embedding->placed[embedding->copies->triangles[3 * t + c]];
-    double complex to[2] = {geometry_log(geometry, p[0], p[1]), geometry_log(geometry, p[0], p[2])};
-    map.tile_area = geometry_triangle_area(geometry, geometry_toward(geometry, p[0], p[1]),
-                                           geometry_toward(geometry, p[0], p[2]));
-    double complex divisor = from[0] * conj(from[1]) - conj(from[0]) * from[1];
+    int sign, c = certificate_corner(geometry, p, &sign), next = (c + 1) % 3, last = (c + 2) % 3;
+    double unit = scale / shape.scale, area = shape.double_area / 2, length = shape.length[c];
+    double along = -vector_dot(shape.edge[c], shape.edge[last]) / length;
+    double complex from[2] = {unit * length, unit * CMPLX(along, 2 * area / length)};
+    double complex to[2] = {geometry_log(geometry, p[c], p[next]), geometry_log(geometry, p[c], p[last])};
+    affine map = {.area = unit * unit * area};
+    map.tile_area = geometry_triangle_area(geometry, geometry_toward(geometry, p[c], p[next]),
+                                           geometry_toward(geometry, p[c], p[last]));
+    double complex divisor = CMPLX(0, -4 * map.area);
     map.a = (to[0] * conj(from[1]) - to[1] * conj(from[0])) / divisor;
     map.b = (to[1] * from[0] - to[0] * from[1]) / divisor;
+    map.determinant = cimag(conj(to[0]) * to[1]) / (2 * map.area);
     return map;
 }
 
@@ -92,8 +93,8 @@ orb_status distortion_measure(orb_embedding *embedding, orb_error *error) {
         affine map = triangle_map(embedding, unit, t);
         if (!(map.area > 0))
             continue;
-        double large = cabs(map.a) + cabs(map.b), small = fabs(cabs(map.a) - cabs(map.b));
-        double ratio = large / small, scale = log(map.tile_area / map.area);
+        double large = cabs(map.a) + cabs(map.b), small = map.determinant / large;
+        double ratio = fmax(1, large / small), scale = log(map.tile_area / map.area);
         area += map.area;
         tile_area += map.tile_area;
         mean += map.area * ratio;

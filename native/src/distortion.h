@@ -4,8 +4,9 @@
 
 #include "embedding.h"
 
-/* Fills the distortion of embedding->report. A triangle's map is the affine one to its image under the logarithm at
- * its first corner; its area on the tile is that of the geometry. Triangles without area on the mesh do not count. */
+/* Fills the distortion of embedding->report, with finite numbers. A triangle's map is the affine one to its image under
+ * the logarithm at the corner where the image's edges are most nearly orthogonal; its area on the tile is that of the
+ * geometry. Triangles without area on the mesh (triangle.h) do not count. */
 orb_status distortion_measure(orb_embedding *embedding, orb_error *error);
 
 /* Sum over the triangles of area times J J', J the affine map of a triangle to its image: [m11, m12, m22]. */

@@ -26,8 +26,8 @@ static orb_isometry deformed_isometry(const orb_geometry *geometry, linear map, 
  * a Hermitian form in (a, b); rotations do not change it, so a may be real. */
 static linear least_conformal(const double covariance[3], double area) {
     double complex nu = CMPLX(covariance[0] - covariance[2], 2 * covariance[1]);
-    double half = cabs(nu) / 2, b = half / (area + hypot(area, half));
-    double shrink = 1 / sqrt(1 - b * b); /* keeps the area */
+    double half = cabs(nu) / 2, sum = area + hypot(area, half), b = half / sum;
+    double shrink = sqrt(sum / (2 * area)); /* 1 / sqrt(1 - b^2): keeps the area */
     linear map = {shrink, half > 0 ? -shrink * b * nu / cabs(nu) : 0};
     return map;
 }

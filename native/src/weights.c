@@ -4,61 +4,18 @@
  * of each triangle's three angles, which are looked at once. */
 #include "weights.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
-/* A triangle's edge vectors, divided by a power of two that brings the longest component into [1, 2): exact, and no
- * square can overflow or vanish against the others, at any size of the mesh. */
-typedef struct triangle_shape {
-    double edge[3][3];  /* corner c to corner c + 1 */
-    double length[3];   /* of these */
-    double double_area; /* 0 where it cannot be told from 0 */
-    double scale;       /* the power of two: a true length times this is the length here */
-} triangle_shape;
-
-static double dot3(const double *a, const double *b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static triangle_shape triangle_measure(const orb_mesh *mesh, int32_t triangle)
-{
-    triangle_shape shape = {0};
-    double largest = 0;
-    for (int c = 0; c < 3; c++) {
-        const double *p = mesh->vertices + 3 * (size_t)mesh->triangles[3 * (size_t)triangle + (size_t)c];
-        const double *q = mesh->vertices + 3 * (size_t)mesh->triangles[3 * (size_t)triangle + (size_t)((c + 1) % 3)];
-        for (int k = 0; k < 3; k++) {
-            shape.edge[c][k] = 0.5 * q[k] - 0.5 * p[k]; /* halves, so that the difference cannot overflow */
-            largest = fmax(largest, fabs(shape.edge[c][k]));
-        }
-    }
-    if (largest == 0) return shape;
-    const int exponent = ilogb(largest);
-    const double factor = ldexp(1, exponent > -1000 ? -exponent : 1000); /* 2^1074 would not be a double */
-    shape.scale = 0.5 * factor;
-    int longest = 0;
-    for (int c = 0; c < 3; c++) {
-        for (int k = 0; k < 3; k++) shape.edge[c][k] *= factor;
-        shape.length[c] = sqrt(dot3(shape.edge[c], shape.edge[c]));
-        if (shape.length[c] > shape.length[longest]) longest = c;
-    }
-    /* Of the three cross products that of the two shorter edges has the least rounding error. */
-    const double *u = shape.edge[(longest + 1) % 3], *v = shape.edge[(longest + 2) % 3];
-    const double cross[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-    const double area = sqrt(dot3(cross, cross));
-    const double noise = 4 * DBL_EPSILON * shape.length[(longest + 1) % 3] * shape.length[(longest + 2) % 3];
-    shape.double_area = area > noise ? area : 0;
-    return shape;
-}
+#include "triangle.h"
+#include "vector3.h"
 
 /* cot[c]: cotangent of the angle that lies opposite half-edge c. False, with cot unset, if the area is zero. */
 static bool triangle_cotangents(const triangle_shape *shape, double cot[3])
 {
     if (shape->double_area == 0) return false;
     for (int c = 0; c < 3; c++)
-        cot[c] = -dot3(shape->edge[(c + 1) % 3], shape->edge[(c + 2) % 3]) / shape->double_area;
+        cot[c] = -vector_dot(shape->edge[(c + 1) % 3], shape->edge[(c + 2) % 3]) / shape->double_area;
     return true;
 }
 
@@ -70,7 +27,7 @@ static void triangle_mean_values(const triangle_shape *shape, double part[3])
     double tangent[3]; /* of half the angle at corner c */
     for (int c = 0; c < 3; c++) {
         const double lengths = shape->length[c] * shape->length[(c + 2) % 3];
-        const double dot = -dot3(shape->edge[c], shape->edge[(c + 2) % 3]);
+        const double dot = -vector_dot(shape->edge[c], shape->edge[(c + 2) % 3]);
         tangent[c] = dot > 0 ? shape->double_area / (lengths + dot) : (lengths - dot) / shape->double_area;
     }
     for (int c = 0; c < 3; c++)

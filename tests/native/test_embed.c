@@ -253,6 +253,39 @@ TEST(assembled_derivatives_against_finite_differences) {
     check_derivatives("55", 2);
 }
 
+/* Triangles with no area, or hardly any, on the mesh: whatever is certified is reported in finite numbers. */
+TEST(reports_are_finite_numbers) {
+    static const struct { const char *signature; int32_t k; } all[] = {{"442", 3}, {"2222", 4}, {"332", 3}, {"33", 2},
+                                                                         {"237", 3}, {"222222", 6}};
+    random_state state = {11};
+    int32_t certified = 0;
+    for (int round = 0; round < 60; round++) {
+        sample_mesh mesh = sample_icosphere(2);
+        for (int i = 0; i < 4; i++) {
+            const int32_t *t = mesh.triangles + 3 * random_below(&state, mesh.n_triangles);
+            for (int k = 0; k < 3; k++) /* its second vertex goes midway between the others, or nearly so */
+                mesh.vertices[3 * t[1] + k] = (mesh.vertices[3 * t[0] + k] + mesh.vertices[3 * t[2] + k]) / 2 +
+                                              (i % 2 ? 1e-14 : 0) * mesh.vertices[3 * t[1] + k];
+        }
+        sample_scale(&mesh, round % 3 == 0 ? 1e150 : round % 3 == 1 ? 1 : 1e-150);
+        int32_t cones[6], kind = round % 6;
+        orb_embedding *embedding = NULL;
+        orb_error error;
+        pick_cones(&state, mesh.n_vertices, all[kind].k, cones);
+        if (embed(&mesh, all[kind].signature, all[kind].k, cones, 0.01, &embedding, &error) == ORB_OK) {
+            const orb_report *report = &embedding->report;
+            certified++;
+            CHECK(report->quasi_conformal_median >= 1 && report->quasi_conformal_mean >= 1);
+            CHECK(report->quasi_conformal_max >= 1 && isfinite(report->quasi_conformal_max));
+            CHECK(isfinite(report->quasi_conformal_mean) && isfinite(report->symmetric_dirichlet));
+            CHECK(report->log_area_std > 0 && isfinite(report->log_area_std) && isfinite(report->energy));
+        }
+        orb_embedding_free(embedding);
+        sample_free(&mesh);
+    }
+    CHECK(certified > 40);
+}
+
 /* A tube of triangles around, closed by a vertex at either end: vertices 3 i, 3 i + 1, 3 i + 2 are ring i. */
 static sample_mesh tube(int32_t n_rings) {
     sample_mesh mesh = sample_new(3 * n_rings + 2, 6 * n_rings);
