@@ -64,9 +64,9 @@ static orb_status check_orientation(orb_embedding *embedding, orb_error *error) 
                                   (long long)flipped, flipped == 1 ? "triangle" : "triangles",
                                   flipped == 1 ? "stays" : "stay", (int)named[0]);
     return error_set_elements(error, ORB_CERTIFICATE_FAILED, ORB_TRIANGLE, named, n_named, flipped,
-                              "%lld triangles are flipped on the tile, first triangle %d: raise the clamp, take uniform "
-                              "weights, or put many cones in the sequence of a short walk",
-                              (long long)flipped, (int)named[0]);
+                              "%lld %s flipped on the tile, first triangle %d: pick a cone near it, put many cones in "
+                              "the sequence of a short walk, raise the clamp, or take uniform weights if these are not",
+                              (long long)flipped, flipped == 1 ? "triangle is" : "triangles are", (int)named[0]);
 }
 
 /* Both copies of every edge have one length. */
@@ -100,8 +100,8 @@ static orb_status check_seams(orb_embedding *embedding, orb_error *error) {
     if (embedding->report.seam_residual < seam_tolerance)
         return ORB_OK;
     return error_set_elements(error, ORB_CERTIFICATE_FAILED, ORB_EDGE, worst, 2, 1,
-                              "the two sides of the seam edge %d-%d differ by %.1e of an edge: there are more digits to the "
-                              "tile than a double has, so put the cones in the sequence of a short walk, or take fewer",
+                              "the two sides of the seam edge %d-%d differ by %.1e of an edge: put the cones in the "
+                              "sequence of a short walk, or pick other ones",
                               (int)worst[0], (int)worst[1], embedding->report.seam_residual);
 }
 

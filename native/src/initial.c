@@ -16,22 +16,37 @@ void initial_cones_only(const orb_disk *disk, const orb_tile *tile, orb_point *p
 static double boundary_length(const orb_disk *disk, int32_t at) {
     const double *p = disk->mesh->vertices + 3 * (size_t)disk->copy_vertex[disk->boundary[at]];
     const double *q = disk->mesh->vertices + 3 * (size_t)disk->copy_vertex[disk->boundary[(at + 1) % disk->n_boundary]];
-    return sqrt((q[0] - p[0]) * (q[0] - p[0]) + (q[1] - p[1]) * (q[1] - p[1]) + (q[2] - p[2]) * (q[2] - p[2]));
+    return hypot(hypot(q[0] - p[0], q[1] - p[1]), q[2] - p[2]); /* no square leaves the range of doubles */
 }
 
-/* The left bank along the tile's sides by arc length; then every right-bank copy where its pairing takes it. */
-static void place_boundary(const orb_disk *disk, const orb_tile *tile, orb_point *position, double complex *chart) {
+/* How far along the side each vertex i of segment s of the path goes, share[i - disk->corner_at[s]] of [0, 1): by arc
+ * length, but apart even where vertices coincide. */
+static void divide_side(const orb_disk *disk, int32_t s, double *share) {
+    static const double least = 1e-6; /* step, of the mean one */
+    int32_t first = disk->corner_at[s], n = disk->corner_at[s + 1] - first;
+    double total = 0, along = 0;
+    for (int32_t i = 0; i < n; i++)
+        total += boundary_length(disk, first + i);
+    bool even = !(total > 0) || !isfinite(total);
+    double shortest = even ? 1 : least * total / n;
+    for (int32_t i = 0; i < n; i++) {
+        share[i] = along;
+        along += even ? 1 : fmax(shortest, boundary_length(disk, first + i));
+    }
+    for (int32_t i = 0; i < n; i++)
+        share[i] /= along;
+}
+
+/* The left bank along the tile's sides; then every right-bank copy where its pairing takes it. share: room for
+ * [n_boundary]. */
+static void place_boundary(const orb_disk *disk, const orb_tile *tile, double *share, orb_point *position,
+                           double complex *chart) {
     const orb_geometry *geometry = tile->geometry;
     for (int32_t s = 0; s + 1 < tile->n_cones; s++) {
-        double total = 0, along = 0;
+        divide_side(disk, s, share);
         for (int32_t i = disk->corner_at[s]; i < disk->corner_at[s + 1]; i++)
-            total += boundary_length(disk, i);
-        orb_point from = tile->corners[s];
-        double complex whole = tile->sides[s];
-        for (int32_t i = disk->corner_at[s]; i < disk->corner_at[s + 1]; i++) {
-            position[disk->boundary[i]] = geometry_exp(geometry, from, (total > 0 ? along / total : 0) * whole);
-            along += boundary_length(disk, i);
-        }
+            position[disk->boundary[i]] =
+                geometry_exp(geometry, tile->corners[s], share[i - disk->corner_at[s]] * tile->sides[s]);
     }
     for (int32_t c = 0; c < tile->n_cones; c++)
         position[disk->boundary[disk->corner_at[c]]] = tile->corners[c];
@@ -142,11 +157,12 @@ orb_status initial_embed(const orb_disk *disk, const orb_tile *tile, const doubl
                          const int32_t *vertex_order, int32_t n_order, orb_point *position, orb_error *error) {
     laplacian system = {0};
     double complex *chart = malloc(((size_t)disk->n_copies + 1) * sizeof *chart);
-    orb_status status = chart ? number_interior(disk, &system, error) : error_memory(error);
+    double *share = malloc(((size_t)disk->n_boundary + 1) * sizeof *share);
+    orb_status status = chart && share ? number_interior(disk, &system, error) : error_memory(error);
     if (status != ORB_OK)
         goto done;
     initial_cones_only(disk, tile, position);
-    place_boundary(disk, tile, position, chart);
+    place_boundary(disk, tile, share, position, chart);
     if (system.n == 0)
         goto done;
     status = build_laplacian(disk, weights, chart, &system, error);
@@ -162,6 +178,7 @@ orb_status initial_embed(const orb_disk *disk, const orb_tile *tile, const doubl
     }
 done:
     free(chart);
+    free(share);
     laplacian_clear(&system);
     return status;
 }

@@ -5,6 +5,8 @@
 
 #include "distortion.h"
 
+static const double longest_tile = 1e7;
+
 /* y -> a y + b conj(y) */
 typedef struct linear {
     double complex a, b;
@@ -23,10 +25,11 @@ static orb_isometry deformed_isometry(const orb_geometry *geometry, linear map, 
 /* The eigenvector of eq. 13 in closed form. With M the sum of area J J', m = trace(M) / 2, A the image's area and
  * nu = M11 - M22 + 2 i M12, the conformal energy of y -> a y + b conj(y) is
  *     |a|^2 (m - A) + |b|^2 (m + A) + Re(a conj(b) nu),
- * a Hermitian form in (a, b); rotations do not change it, so a may be real. */
+ * a Hermitian form in (a, b); rotations do not change it, so a may be real. Slivers can ask for a tile of any length;
+ * past 1e7 times its width the image's area would lose the digits that the certificate wants. */
 static linear least_conformal(const double covariance[3], double area) {
     double complex nu = CMPLX(covariance[0] - covariance[2], 2 * covariance[1]);
-    double half = cabs(nu) / 2, sum = area + hypot(area, half), b = half / sum;
+    double half = fmin(cabs(nu) / 2, longest_tile * area), sum = area + hypot(area, half), b = half / sum;
     double shrink = sqrt(sum / (2 * area)); /* 1 / sqrt(1 - b^2): keeps the area */
     linear map = {shrink, half > 0 ? -shrink * b * nu / cabs(nu) : 0};
     return map;

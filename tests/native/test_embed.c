@@ -286,6 +286,51 @@ TEST(reports_are_finite_numbers) {
     CHECK(certified > 40);
 }
 
+/* Slivers pull the modulus of 2222 towards an endless tile: it stays one whose area is right. */
+TEST(slivers_do_not_spoil_the_modulus) {
+    random_state state = {3};
+    for (int round = 0; round < 40; round++) {
+        sample_mesh mesh = sample_icosphere(1);
+        for (int32_t k = 0; k < 3 * mesh.n_vertices; k++)
+            mesh.vertices[k] += 1000; /* rounds what follows at 1e-13 */
+        for (int i = 0; i < 5; i++) {
+            const int32_t *t = mesh.triangles + 3 * random_below(&state, mesh.n_triangles);
+            for (int k = 0; k < 3; k++)
+                mesh.vertices[3 * t[1] + k] = (mesh.vertices[3 * t[0] + k] + mesh.vertices[3 * t[2] + k]) / 2;
+        }
+        int32_t cones[4];
+        orb_embedding *embedding = NULL;
+        orb_error error;
+        orb_mesh_arrays arrays = sample_arrays(&mesh);
+        orb_request request = orb_request_default();
+        request.signature = "2222";
+        request.n_cones = 4;
+        request.cones = cones;
+        request.weights = ORB_WEIGHTS_UNIFORM;
+        pick_cones(&state, mesh.n_vertices, 4, cones);
+        CHECK(orb_embed(&arrays, &request, &embedding, &error) == ORB_OK);
+        orb_embedding_free(embedding);
+        sample_free(&mesh);
+    }
+}
+
+/* Sizes say nothing where all vertices coincide, or are too far apart for a double; a cut runs on all the same. */
+TEST(a_cut_without_a_length) {
+    static const struct { const char *signature; int32_t k; } all[] = {{"33", 2}, {"332", 3}, {"444", 3}};
+    static const double sizes[] = {0, 1e-200, 1e200, 1e308};
+    for (int kind = 0; kind < 3; kind++)
+        for (int i = 0; i < 4; i++) {
+            sample_mesh mesh = sample_icosphere(2);
+            sample_scale(&mesh, sizes[i]);
+            int32_t cones[] = {0, 1, 2};
+            orb_embedding *embedding = NULL;
+            orb_error error;
+            CHECK(embed(&mesh, all[kind].signature, all[kind].k, cones, 0.01, &embedding, &error) == ORB_OK);
+            orb_embedding_free(embedding);
+            sample_free(&mesh);
+        }
+}
+
 /* A tube of triangles around, closed by a vertex at either end: vertices 3 i, 3 i + 1, 3 i + 2 are ring i. */
 static sample_mesh tube(int32_t n_rings) {
     sample_mesh mesh = sample_new(3 * n_rings + 2, 6 * n_rings);
