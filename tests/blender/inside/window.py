@@ -98,7 +98,7 @@ def show_tab(area):
         yield
         window().event_simulate(type="LEFTMOUSE", value="RELEASE", x=x, y=y)
         yield
-        if area.as_pointer() in drawn:
+        if (area.as_pointer(), area.type) in drawn:
             return
 
 
@@ -109,7 +109,7 @@ def watch_panels():
     """Note in which editors our panel is drawn."""
     for name in ("VIEW3D_PT_orbifold", "IMAGE_PT_orbifold"):
         cls = getattr(bpy.types, name)
-        cls.append(lambda self, context: drawn.add(context.area.as_pointer()))
+        cls.append(lambda self, context: drawn.add((context.area.as_pointer(), context.area.type)))
 
 
 def undone(name):
@@ -131,9 +131,7 @@ def escaped():
     yield
     with in_view():
         seen["invoked_large"] = list(bpy.ops.uv.orbifold_unwrap("INVOKE_DEFAULT", True))
-    yield
-    yield
-    window().event_simulate(type="ESC", value="PRESS")
+    window().event_simulate(type="ESC", value="PRESS")  # before a frame, which can take longer than the whole job
     for _ in range(20):
         yield
     seen["uv_after_esc"] = [layer.name for layer in obj.data.uv_layers]
