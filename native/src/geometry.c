@@ -8,6 +8,7 @@
 struct orb_geometry {
     int K;
     const char *name;
+    orb_chart first_chart, last_chart;
     bool any_start;
     double longest_step;
     double (*tan)(double), (*atan)(double), (*sin)(double), (*cos)(double);
@@ -17,14 +18,16 @@ static double same(double r) { return r; }
 static double one(double r) { return r - r + 1; /* NaN stays NaN */ }
 
 static const orb_geometry geometries[] = {
-    {-1, "hyperbolic", false, INFINITY, tanh, atanh, sinh, cosh},
-    {0, "euclidean", true, INFINITY, same, same, same, one},
-    {+1, "spherical", false, 0.5, tan, atan, sin, cos},
+    {-1, "hyperbolic", ORB_CHART_POINCARE, ORB_CHART_KLEIN, false, INFINITY, tanh, atanh, sinh, cosh},
+    {0, "euclidean", ORB_CHART_PERIODIC, ORB_CHART_CONFORMAL, true, INFINITY, same, same, same, one},
+    {+1, "spherical", ORB_CHART_STEREOGRAPHIC, ORB_CHART_OCTAHEDRAL, false, 0.5, tan, atan, sin, cos},
 };
 
 const orb_geometry *geometry_of_curvature(int curvature) { return &geometries[1 + (curvature > 0) - (curvature < 0)]; }
 const char *geometry_name(const orb_geometry *geometry) { return geometry->name; }
 int geometry_curvature(const orb_geometry *geometry) { return geometry->K; }
+orb_chart geometry_first_chart(const orb_geometry *geometry) { return geometry->first_chart; }
+orb_chart geometry_last_chart(const orb_geometry *geometry) { return geometry->last_chart; }
 bool geometry_any_start(const orb_geometry *geometry) { return geometry->any_start; }
 double geometry_longest_step(const orb_geometry *geometry) { return geometry->longest_step; }
 double geometry_sin(const orb_geometry *geometry, double r) { return geometry->sin(r); }

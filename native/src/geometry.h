@@ -16,6 +16,8 @@
 #include <complex.h>
 #include <stdbool.h>
 
+#include "orbifold.h"
+
 #ifndef CMPLX /* C11 has it; glibc hides it from clang */
 #define CMPLX(x, y) __builtin_complex((double)(x), (double)(y))
 #endif
@@ -34,7 +36,11 @@ typedef struct orb_isometry {
 /* curvature > 0, 0, < 0: sphere, plane, hyperbolic plane. A constant; never freed. */
 const orb_geometry *geometry_of_curvature(int curvature);
 const char *geometry_name(const orb_geometry *geometry);
+/* K, for tile.c only. */
 int geometry_curvature(const orb_geometry *geometry);
+/* The flat charts of a layout run from the first, the default, to the last. */
+orb_chart geometry_first_chart(const orb_geometry *geometry);
+orb_chart geometry_last_chart(const orb_geometry *geometry);
 
 /* --- how the minimiser treats the geometry (one row of a table each, docs/decisions.md) --- */
 /* The energy is quadratic: any starting point will do, so none is computed. */

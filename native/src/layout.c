@@ -25,7 +25,6 @@ typedef enum chart_finish {
 
 typedef struct chart_row {
     orb_chart chart;
-    int curvature;
     const char *name;
     orb_status (*prepare)(const orb_embedding *embedding, chart_frame *frame, orb_error *error); /* may be NULL */
     double complex (*map)(const chart_frame *frame, orb_point p); /* u + i v */
@@ -124,38 +123,41 @@ static double complex map_klein(const chart_frame *frame, orb_point p) {
 
 /* ----------------------------------------------------------------------------------------------------- table */
 
-/* The first chart of a geometry is its default. */
 static const chart_row charts[] = {
-    {ORB_CHART_PERIODIC, 0, "periodic", prepare_periodic, map_periodic, NULL, FINISH_SHIFT},
-    {ORB_CHART_CONFORMAL, 0, "conformal", NULL, map_plain, NULL, FINISH_FIT},
-    {ORB_CHART_STEREOGRAPHIC, 1, "stereographic", NULL, map_plain, NULL, FINISH_FIT},
-    {ORB_CHART_EQUIRECTANGULAR, 1, "equirectangular", prepare_equirectangular, map_equirectangular, join_longitudes,
+    {ORB_CHART_PERIODIC, "periodic", prepare_periodic, map_periodic, NULL, FINISH_SHIFT},
+    {ORB_CHART_CONFORMAL, "conformal", NULL, map_plain, NULL, FINISH_FIT},
+    {ORB_CHART_STEREOGRAPHIC, "stereographic", NULL, map_plain, NULL, FINISH_FIT},
+    {ORB_CHART_EQUIRECTANGULAR, "equirectangular", prepare_equirectangular, map_equirectangular, join_longitudes,
      FINISH_NOTHING},
-    {ORB_CHART_OCTAHEDRAL, 1, "octahedral", NULL, map_octahedral, NULL, FINISH_NOTHING},
-    {ORB_CHART_POINCARE, -1, "Poincaré", NULL, map_poincare, NULL, FINISH_NOTHING},
-    {ORB_CHART_KLEIN, -1, "Klein", NULL, map_klein, NULL, FINISH_NOTHING},
+    {ORB_CHART_OCTAHEDRAL, "octahedral", NULL, map_octahedral, NULL, FINISH_NOTHING},
+    {ORB_CHART_POINCARE, "Poincaré", NULL, map_poincare, NULL, FINISH_NOTHING},
+    {ORB_CHART_KLEIN, "Klein", NULL, map_klein, NULL, FINISH_NOTHING},
 };
 enum { N_CHARTS = sizeof charts / sizeof *charts };
 
-static const chart_row *find_chart(orb_chart chart, int curvature) {
+static const chart_row *row_of(orb_chart chart) {
     for (int i = 0; i < N_CHARTS; i++)
-        if (charts[i].curvature == curvature && (chart == ORB_CHART_DEFAULT || charts[i].chart == chart))
+        if (charts[i].chart == chart)
             return &charts[i];
     return NULL;
 }
 
+/* NULL for the chart of another geometry. */
+static const chart_row *find_chart(orb_chart chart, const orb_geometry *geometry) {
+    orb_chart first = geometry_first_chart(geometry), wanted = chart == ORB_CHART_DEFAULT ? first : chart;
+    return wanted >= first && wanted <= geometry_last_chart(geometry) ? row_of(wanted) : NULL;
+}
+
 static orb_status error_no_chart(orb_chart chart, const orb_geometry *geometry, orb_error *error) {
-    const char *fit[N_CHARTS + 1] = {0}, *name = NULL;
+    const chart_row *row = row_of(chart);
+    const char *fit[N_CHARTS + 1] = {0};
     int n = 0;
-    for (int i = 0; i < N_CHARTS; i++) {
-        if (charts[i].curvature == geometry_curvature(geometry))
+    for (int i = 0; i < N_CHARTS; i++)
+        if (find_chart(charts[i].chart, geometry))
             fit[n++] = charts[i].name;
-        if (charts[i].chart == chart)
-            name = charts[i].name;
-    }
     return error_set(error, ORB_BAD_ARGUMENT,
-                     "the chart %s%s does not fit a layout that is %s: choose %s%s%s%s%s", name ? "" : "asked for",
-                     name ? name : "", geometry_name(geometry), fit[0], n > 2 ? ", " : "", n > 2 ? fit[1] : "",
+                     "the chart %s%s does not fit a layout that is %s: choose %s%s%s%s%s", row ? "" : "asked for",
+                     row ? row->name : "", geometry_name(geometry), fit[0], n > 2 ? ", " : "", n > 2 ? fit[1] : "",
                      n > 1 ? " or " : "", n > 1 ? fit[n - 1] : "");
 }
 
@@ -191,7 +193,7 @@ ORB_API orb_status orb_uv(const orb_embedding *embedding, orb_chart chart, doubl
     if (!embedding || !uv)
         return error_set(error, ORB_BAD_ARGUMENT, "%s is missing: pass one", uv ? "the embedding" : "the array uv");
     chart_frame frame = {.geometry = embedding->tile->geometry};
-    const chart_row *row = find_chart(chart, geometry_curvature(frame.geometry));
+    const chart_row *row = find_chart(chart, frame.geometry);
     if (!row)
         return error_no_chart(chart, frame.geometry, error);
     orb_status status = row->prepare ? row->prepare(embedding, &frame, error) : ORB_OK;

@@ -266,7 +266,8 @@ orb_status mend_sphere(const orb_mesh *mesh, double *positions, int64_t *mended,
     double degree = mend_degree(mesh, positions);
     status = !(fabs(degree - 1) < 1e-6)
                  ? error_set(error, ORB_CERTIFICATE_FAILED,
-                             "the map onto the whole sphere covers it %.3g times instead of once: pick other cones",
+                             "the map onto the whole sphere covers it %.3g times instead of once: pick other cones, "
+                             "or split the mesh along the seam",
                              degree)
                  : error_set(error, ORB_OK, "%s", "");
 done:

@@ -282,6 +282,19 @@ static orb_status error_not_converged(const minimiser *work, orb_error *error) {
                               work->relative);
 }
 
+/* Names the vertices where the first embedding has no gradient to go by. */
+static orb_status error_bad_start(const minimiser *work, orb_error *error) {
+    orb_found found = {0};
+    for (int32_t v = 0; v < work->problem->n_vertices; v++)
+        if (work->problem->freedom[v] && !(cabs(work->gradient[v]) <= 2 * work->scale[v] && isfinite(work->scale[v])))
+            found_add(&found, v);
+    return error_set_elements(error, ORB_NOT_CONVERGED, ORB_VERTEX, found.elements, found.entries, found.found,
+                              "the first embedding is not finite at %lld %s, first %d: take lower orders, other weights "
+                              "or other cones",
+                              (long long)found.found, found.found == 1 ? "vertex" : "vertices",
+                              found.found ? (int)found.elements[0] : -1);
+}
+
 orb_status newton_minimise(const orb_problem *problem, orb_system *system, const int32_t *order, orb_point *position,
                            orb_minimum *minimum, orb_monitor *monitor, orb_error *error) {
     *minimum = (orb_minimum){0};
@@ -299,8 +312,7 @@ orb_status newton_minimise(const orb_problem *problem, orb_system *system, const
         goto done;
     evaluate(&work);
     if (!isfinite(work.relative) || !isfinite(work.energy)) {
-        status = error_set(error, ORB_NOT_CONVERGED,
-                           "the first embedding is out of all proportion: vertices coincide or lie too far out");
+        status = error_bad_start(&work, error);
         goto done;
     }
     if (system->n_free > 0)

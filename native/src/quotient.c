@@ -4,6 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Finding an orbit takes time in its square, and dividing one vertex in the orbit. */
+static const int64_t largest_group = 20000;
+
 /* One point of an orbit, z = u / v with |u|^2 + |v|^2 = 1. */
 typedef struct root {
     double complex u, v;
@@ -129,6 +132,11 @@ orb_status quotient_create(const orb_tile *tile, orb_quotient **result, orb_erro
     if (tile->n_cones > 3 || !(euler > 0))
         return error_set(error, ORB_BAD_ARGUMENT, "only a spherical orbifold has the whole sphere as its quotient: "
                                                   "choose a signature such as 33, 225, 332, 432 or 532");
+    if (tile->n_cones == 3 && llround(2 / euler) > largest_group)
+        return error_set(error, ORB_UNSUPPORTED_SIGNATURE,
+                         "the group has %.0f elements, too many to divide the whole sphere by: take orders of at most "
+                         "%d, or split the mesh along the seam",
+                         2 / euler, (int)(largest_group / 2));
     orb_status status = error_memory(error);
     orb_quotient *quotient = calloc(1, sizeof *quotient);
     if (!quotient)

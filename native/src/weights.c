@@ -162,10 +162,11 @@ static orb_status report_faults(const row_faults *faults, const orb_request *req
     if (faults->no_vertices > 0) {
         const double *row = request->edge_weights + 3 * (size_t)faults->first_row;
         return error_set(error, ORB_BAD_WEIGHT,
-                         "%lld %s of edge weights, first row %d (%g, %g, %g), not begin with two vertices of 0 to "
-                         "%d: give rows i, j, w_ij of this mesh",
-                         (long long)faults->no_vertices, faults->no_vertices == 1 ? "row does" : "rows do",
-                         (int)faults->first_row, row[0], row[1], row[2], (int)mesh->n_vertices - 1);
+                         "%lld %s not begin with two vertices of 0 to %d, first row %d (%g, %g, %g): give rows i, j, "
+                         "w_ij of this mesh",
+                         (long long)faults->no_vertices,
+                         faults->no_vertices == 1 ? "row of edge weights does" : "rows of edge weights do",
+                         (int)mesh->n_vertices - 1, (int)faults->first_row, row[0], row[1], row[2]);
     }
     const struct {
         const orb_found *found;

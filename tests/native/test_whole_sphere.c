@@ -159,6 +159,15 @@ TEST(only_spherical_tiles_have_a_quotient) {
     tile_free(tile);
 }
 
+TEST(a_group_beyond_measure_is_refused_at_once) {
+    orb_tile *tile = NULL;
+    orb_quotient *quotient = NULL;
+    orb_error error;
+    REQUIRE(tile_create(1, 3, (int32_t[]){1000000, 2, 2}, &tile, &error) == ORB_OK);
+    CHECK(quotient_create(tile, &quotient, &error) == ORB_UNSUPPORTED_SIGNATURE && !quotient);
+    tile_free(tile);
+}
+
 /* ------------------------------------------------------------------------------------------------------ centring */
 
 static orb_ratio ratio_of(double complex zero, double complex pole) {
