@@ -1,9 +1,5 @@
 /* Orbifold UV: bijective, seamless maps of a triangle mesh onto an orbifold of the sphere, the plane or the
- * hyperbolic plane.
- *
- * SPDX-License-Identifier: GPL-3.0-or-later
- *
- * The way through this header:
+ * hyperbolic plane. SPDX-License-Identifier: GPL-3.0-or-later
  *
  *     orb_embedding *embedding = NULL;
  *     orb_error error = {0};
@@ -18,25 +14,19 @@
  * positively oriented, both sides of every seam equally long, the angles around every vertex those of the
  * orbifold, and the orbifold's area. These four make the map a bijection.
  *
- * The library keeps no global state (but one lock around BLAS), prints nothing, never exits and never writes to an array it is given; arrays
- * of the caller are not needed after a call returns. Functions may be called from several threads at once as long
- * as each has its own objects. Angles are in radians. Vertices and triangles are counted from 0. */
+ * The library keeps no global state but one lock around BLAS, prints nothing, never exits and never writes to an
+ * array that it reads; the caller's arrays are not needed after a call returns. Functions may be called from several
+ * threads at once as long as each has its own objects. Angles are in radians; vertices and triangles count from 0. */
 #ifndef ORBIFOLD_H
 #define ORBIFOLD_H
-
 #include <stdbool.h>
 #include <stdint.h>
-
 #ifdef __cplusplus
 extern "C" {
 #endif
-
 #define ORB_API __attribute__((visibility("default")))
-
 typedef enum orb_status {
-    ORB_OK = 0,
-    ORB_OUT_OF_MEMORY,
-    ORB_CANCELLED,
+    ORB_OK = 0, ORB_OUT_OF_MEMORY, ORB_CANCELLED,
     ORB_BAD_ARGUMENT,             /* a null array, a negative count, an unknown chart or kind of weights */
     ORB_NON_FINITE,               /* a coordinate that is not a finite number; elements: vertices */
     ORB_INDEX_OUT_OF_RANGE,       /* a triangle names a vertex that is not there; elements: triangles */
@@ -52,21 +42,19 @@ typedef enum orb_status {
     ORB_BAD_SIGNATURE,            /* does not parse; elements[0]: position in the string */
     ORB_BAD_ORDER,                /* an order below 2, or orders that are not the signature's */
     ORB_BAD_ORBIFOLD,             /* MN with M != N, or one cone: no surface has this orbifold as a quotient */
-    ORB_UNSUPPORTED_SIGNATURE,    /* good, but not among those that this version embeds */
+    ORB_UNSUPPORTED_SIGNATURE,    /* good, but not one that this version embeds, or divides the whole sphere by */
     ORB_CONE_COUNT,               /* the signature has another number of cones than were given */
     ORB_BAD_CONE,                 /* a cone is given twice, is out of range or isolated; elements: vertices */
     ORB_BAD_WEIGHT,               /* a given weight is not positive and finite, or an edge has none; elements: edges */
-    ORB_CUT_BLOCKED,              /* no path joins two cones; elements: the two vertices */
-    ORB_NOT_CONVERGED,
+    ORB_CUT_BLOCKED,              /* no path joins two cones, within bounds; elements: the two vertices */
+    ORB_NOT_CONVERGED,            /* elements: vertices, where any stand out */
     ORB_CERTIFICATE_FAILED,       /* elements: flipped triangles, or the vertices whose angles are wrong */
     ORB_LINEAR_SOLVER             /* CHOLMOD reported a fault that is none of the above */
 } orb_status;
 
-/* "ORB_OK", "ORB_OUT_OF_MEMORY", ...; never NULL. */
-ORB_API const char *orb_status_name(orb_status status);
+ORB_API const char *orb_status_name(orb_status status); /* "ORB_OK", "ORB_OUT_OF_MEMORY", ...; never NULL */
 
 typedef enum orb_element { ORB_NOTHING = 0, ORB_VERTEX, ORB_EDGE, ORB_TRIANGLE, ORB_CHARACTER } orb_element;
-
 enum { ORB_MAX_ELEMENTS = 16 };
 
 /* What went wrong, for a person: one sentence, and where. An edge takes two entries (its vertices). */
@@ -82,7 +70,7 @@ typedef struct orb_error {
 /* A closed (sphere-like) triangle mesh, consistently oriented. Vertices that no triangle uses are tolerated. */
 typedef struct orb_mesh_arrays {
     int32_t n_vertices;
-    const double *vertices; /* [n_vertices*3] */
+    const double *vertices;   /* [n_vertices*3] */
     int32_t n_triangles;
     const int32_t *triangles; /* [n_triangles*3] */
 } orb_mesh_arrays;
@@ -107,14 +95,12 @@ typedef struct orb_request {
     int32_t n_edge_weights;      /* for ORB_WEIGHTS_GIVEN: one row for each edge of the mesh, in any sequence */
     const double *edge_weights;  /* [n_edge_weights*3] rows i, j, w_ij > 0 */
     orb_progress progress;       /* may be NULL */
-    void *user;                  /* handed to progress */
+    void *user;                  /* its last argument */
 } orb_request;
 
-/* Cotangent weights clamped at 0.01; all else zero. */
-ORB_API orb_request orb_request_default(void);
+ORB_API orb_request orb_request_default(void); /* cotangent weights clamped at 0.01; all else zero */
 
-/* Conway's signature, read. Euler characteristic of the orbifold as an exact fraction. */
-enum { ORB_MAX_SIGNATURE = 4096 };
+enum { ORB_MAX_SIGNATURE = 4096 }; /* characters */
 typedef struct orb_signature_info {
     int32_t curvature;      /* +1 spherical, 0 Euclidean, -1 hyperbolic */
     const char *geometry;   /* "spherical", "euclidean", "hyperbolic" */
@@ -128,10 +114,9 @@ typedef struct orb_signature_info {
 ORB_API orb_status orb_signature_read(const char *signature, orb_signature_info *info, int32_t *orders,
                                       int32_t capacity, orb_error *error);
 
-typedef struct orb_embedding orb_embedding;
-
 /* The whole pipeline: topology, weights, cut, tile, initial guess, minimisation, certificate. On success
  * *embedding is a new object; on failure it is NULL. */
+typedef struct orb_embedding orb_embedding;
 ORB_API orb_status orb_embed(const orb_mesh_arrays *mesh, const orb_request *request, orb_embedding **embedding,
                              orb_error *error);
 ORB_API void orb_embedding_free(orb_embedding *embedding);
@@ -144,15 +129,15 @@ typedef struct orb_view {
     const int32_t *cut_to_vertex; /* [n_copies] */
     const double *embedding;      /* [n_copies*3] (x, y, 1), unit sphere, or upper sheet of the hyperboloid */
     const double *embedding_low;  /* [n_copies*3] what double precision cut off: the point is the sum of the two */
-    const int32_t *cones;         /* [n_cones] */
-    const int32_t *orders;        /* [n_cones] */
+    const int32_t *cones, *orders; /* [n_cones] */
     const double *weights;        /* [n_edges*3] rows i, j, w_ij as used */
     const int32_t *seams;         /* [n_seams*2] edges of the mesh across which the layout is not continuous */
     const char *signature, *geometry;
 } orb_view;
 ORB_API void orb_embedding_view(const orb_embedding *embedding, orb_view *view);
 
-/* Measures of an embedding. Lengths and areas on the tile are those of the geometry. */
+/* Measures of an embedding. Lengths and areas on the tile are those of the geometry. The measures of distortion leave
+ * out triangles without area, and are 0 where no other is left. */
 typedef struct orb_report {
     int32_t vertices, triangles, components, euler, boundary_loops, genus; /* of the mesh */
     double orbifold_euler;
@@ -182,20 +167,19 @@ typedef enum orb_chart {
     ORB_CHART_KLEIN            /* hyperbolic: straight geodesics */
 } orb_chart;
 
-/* Texture coordinates per triangle corner, uv[n_triangles*3*2], caller's array. *flipped_float32 (may be NULL): the
- * number of triangles that are not positively oriented once the coordinates are rounded to float. Error:
- * ORB_BAD_ARGUMENT for a chart of another geometry. */
+/* Texture coordinates per triangle corner, uv[n_triangles*3*2]. *flipped_float32 (may be NULL): how many triangles are
+ * not positively oriented once these are rounded to float. Error: ORB_BAD_ARGUMENT for a chart of another geometry. */
 ORB_API orb_status orb_uv(const orb_embedding *embedding, orb_chart chart, double *uv, int64_t *flipped_float32,
                           orb_error *error);
 
-/* One point of the unit sphere for each vertex, positions[n_vertices*3], caller's array: a spherical embedding
- * divided by its group and centred (docs/mathematics.md, section 7), so that a closed mesh needs no cut. Certified:
- * every triangle is positively oriented and the degree is one. *mended (may be NULL): triangles that the division
- * had flipped and that were mended. Isolated vertices get the origin. */
+/* One point of the unit sphere for each vertex, positions[n_vertices*3]: a spherical embedding divided by its group
+ * and centred (docs/mathematics.md, section 7), so that a closed mesh needs no cut. Certified: every triangle is
+ * positively oriented and the degree is one. *mended (may be NULL): triangles that the division had flipped and that
+ * were mended. Isolated vertices get the origin. */
 ORB_API orb_status orb_whole_sphere(const orb_embedding *embedding, double *positions, int64_t *mended,
                                     orb_error *error);
 
-/* The same computation on a thread of the library's own. The arrays of mesh and request are copied; the request's
+/* The same as orb_embed on a thread of the library's own. The arrays of mesh and request are copied; the request's
  * progress is not called: poll instead. */
 typedef struct orb_job orb_job;
 ORB_API orb_status orb_job_start(const orb_mesh_arrays *mesh, const orb_request *request, orb_job **job,
@@ -207,8 +191,7 @@ ORB_API void orb_job_cancel(orb_job *job);
 /* Waits, hands over the embedding (or the error), and frees the job, which may be NULL. */
 ORB_API orb_status orb_job_finish(orb_job *job, orb_embedding **embedding, orb_error *error);
 
-/* "0.1.0" */
-ORB_API const char *orb_version(void);
+ORB_API const char *orb_version(void); /* "0.1.0" */
 
 #ifdef __cplusplus
 }

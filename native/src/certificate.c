@@ -59,8 +59,8 @@ static orb_status check_orientation(orb_embedding *embedding, orb_error *error) 
         return ORB_OK;
     if (flipped == without_area)
         return error_set_elements(error, ORB_ZERO_AREA_TRIANGLE, ORB_TRIANGLE, named, n_named, flipped,
-                                  "%lld %s without area %s flat on the tile, first triangle %d: dissolve degenerate faces, or "
-                                  "take uniform weights",
+                                  "%lld %s without area %s flat on the tile, first triangle %d: dissolve degenerate "
+                                  "faces, or take uniform weights",
                                   (long long)flipped, flipped == 1 ? "triangle" : "triangles",
                                   flipped == 1 ? "stays" : "stay", (int)named[0]);
     return error_set_elements(error, ORB_CERTIFICATE_FAILED, ORB_TRIANGLE, named, n_named, flipped,
@@ -137,8 +137,8 @@ static orb_status check_angles(orb_embedding *embedding, double *area, orb_error
     if (embedding->report.angle_residual < angle_tolerance)
         return ORB_OK;
     return error_set_elements(error, ORB_CERTIFICATE_FAILED, ORB_VERTEX, &worst, 1, 1,
-                              "the angles around vertex %d are off by %.1e: dissolve degenerate faces near it, or pick a cone "
-                              "near it",
+                              "the angles around vertex %d are off by %.1e: dissolve degenerate faces near it, or pick a "
+                              "cone near it",
                               (int)worst, embedding->report.angle_residual);
 }
 
@@ -155,6 +155,8 @@ orb_status certificate_check(orb_embedding *embedding, orb_error *error) {
     embedding->report.area_residual = fabs(area - expected) / expected;
     if (embedding->report.area_residual < area_tolerance)
         return ORB_OK;
-    return error_set(error, ORB_CERTIFICATE_FAILED, "the triangles' area is off by %.1e of the orbifold's: dissolve degenerate faces, or pick other cones",
+    return error_set(error, ORB_CERTIFICATE_FAILED,
+                     "the triangles' area is off by %.1e of the orbifold's: dissolve degenerate faces, or pick other "
+                     "cones",
                      embedding->report.area_residual);
 }

@@ -1,7 +1,7 @@
 /* CHOLMOD, wrapped. SPDX-License-Identifier: GPL-3.0-or-later
  *
- * CHOLMOD comes twice, with indices of 32 and of 64 bits. The narrow one is faster (docs/decisions.md) and is tried first;
- * where it says that a problem is too large for its indices, the wide one takes over. */
+ * CHOLMOD comes twice, with indices of 32 and of 64 bits. The narrow one is faster (docs/decisions.md) and is tried
+ * first; where it says that a problem is too large for its indices, the wide one takes over. */
 #include "cholesky.h"
 
 #include <cholmod.h>

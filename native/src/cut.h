@@ -1,4 +1,5 @@
-/* Sphere-like mesh + cones -> a disk cut open along the path c_1 -> ... -> c_k. SPDX-License-Identifier: GPL-3.0-or-later
+/* Sphere-like mesh + cones -> a disk, cut open along the path c_1 -> ... -> c_k.
+ * SPDX-License-Identifier: GPL-3.0-or-later
  *
  * The disk lives on the input mesh, or, where its edges leave no room for the paths (a coarse mesh), on a mesh
  * refined along them; the refinement serves to say which way round the cones the cut runs and to start the

@@ -11,16 +11,15 @@ struct orb_geometry {
     orb_chart first_chart, last_chart;
     bool any_start;
     double longest_step;
-    double (*tan)(double), (*atan)(double), (*sin)(double), (*cos)(double);
+    double (*tan)(double), (*atan)(double);
 };
 
 static double same(double r) { return r; }
-static double one(double r) { return r - r + 1; /* NaN stays NaN */ }
 
 static const orb_geometry geometries[] = {
-    {-1, "hyperbolic", ORB_CHART_POINCARE, ORB_CHART_KLEIN, false, INFINITY, tanh, atanh, sinh, cosh},
-    {0, "euclidean", ORB_CHART_PERIODIC, ORB_CHART_CONFORMAL, true, INFINITY, same, same, same, one},
-    {+1, "spherical", ORB_CHART_STEREOGRAPHIC, ORB_CHART_OCTAHEDRAL, false, 0.5, tan, atan, sin, cos},
+    {-1, "hyperbolic", ORB_CHART_POINCARE, ORB_CHART_KLEIN, false, INFINITY, tanh, atanh},
+    {0, "euclidean", ORB_CHART_PERIODIC, ORB_CHART_CONFORMAL, true, INFINITY, same, same},
+    {+1, "spherical", ORB_CHART_STEREOGRAPHIC, ORB_CHART_OCTAHEDRAL, false, 0.5, tan, atan},
 };
 
 const orb_geometry *geometry_of_curvature(int curvature) { return &geometries[1 + (curvature > 0) - (curvature < 0)]; }
@@ -30,10 +29,6 @@ orb_chart geometry_first_chart(const orb_geometry *geometry) { return geometry->
 orb_chart geometry_last_chart(const orb_geometry *geometry) { return geometry->last_chart; }
 bool geometry_any_start(const orb_geometry *geometry) { return geometry->any_start; }
 double geometry_longest_step(const orb_geometry *geometry) { return geometry->longest_step; }
-double geometry_sin(const orb_geometry *geometry, double r) { return geometry->sin(r); }
-double geometry_cos(const orb_geometry *geometry, double r) { return geometry->cos(r); }
-double geometry_tan(const orb_geometry *geometry, double r) { return geometry->tan(r); }
-double geometry_atan(const orb_geometry *geometry, double t) { return geometry->atan(t); }
 
 /* ---------------------------------------------------------------------------------------- double-double and back */
 

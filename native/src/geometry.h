@@ -48,12 +48,6 @@ bool geometry_any_start(const orb_geometry *geometry);
 /* The longest step of a vertex that the minimiser may try; infinite where the energy is convex. */
 double geometry_longest_step(const orb_geometry *geometry);
 
-/* --- functions of curvature: sin r, r, sinh r and so on --- */
-double geometry_sin(const orb_geometry *geometry, double r);
-double geometry_cos(const orb_geometry *geometry, double r);
-double geometry_tan(const orb_geometry *geometry, double r);
-double geometry_atan(const orb_geometry *geometry, double t);
-
 /* --- points --- */
 orb_point point_of(double complex z);
 orb_point point_conjugate(orb_point p);

@@ -1,4 +1,5 @@
-/* The translations of a plane group, and the cell that a repeating image fills. SPDX-License-Identifier: GPL-3.0-or-later */
+/* The translations of a plane group, and the cell that a repeating image fills.
+ * SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef ORB_LATTICE_H
 #define ORB_LATTICE_H
 

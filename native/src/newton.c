@@ -180,7 +180,8 @@ static void move_back(minimiser *work) {
 static bool is_noise(const minimiser *work, double slope) { return -slope < energy_noise * work->energy; }
 
 /* Halves the step until the energy falls enough; in the noise, the full step. Afterwards position and gradient are the
- * new point's, trial and old_gradient the old one's; *taken is the scale used, 0 when no step helps and nothing moved. */
+ * new point's, trial and old_gradient the old one's; *taken is the scale used, 0 when no step helps and nothing
+ * moved. */
 static void line_search(minimiser *work, double slope, double *taken) {
     double longest = 0, before = work->energy;
     for (int32_t v = 0; v < work->problem->n_vertices; v++)
@@ -289,8 +290,8 @@ static orb_status error_bad_start(const minimiser *work, orb_error *error) {
         if (work->problem->freedom[v] && !(cabs(work->gradient[v]) <= 2 * work->scale[v] && isfinite(work->scale[v])))
             found_add(&found, v);
     return error_set_elements(error, ORB_NOT_CONVERGED, ORB_VERTEX, found.elements, found.entries, found.found,
-                              "the first embedding is not finite at %lld %s, first %d: take lower orders, other weights "
-                              "or other cones",
+                              "the first embedding is not finite at %lld %s, first %d: take lower orders, other "
+                              "weights or other cones",
                               (long long)found.found, found.found == 1 ? "vertex" : "vertices",
                               found.found ? (int)found.elements[0] : -1);
 }

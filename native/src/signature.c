@@ -123,14 +123,15 @@ static orb_status refuse_bad_orbifold(const orb_signature *signature, orb_error 
     int32_t count = only_mirror ? signature->n_corners : signature->n_cones;
     if ((!only_cones && !only_mirror) || count > 2 || count == 0)
         return ORB_OK;
+    const char *left = n[0] < 10 ? "" : "(", *right = n[0] < 10 ? "" : ")";
     if (count == 1)
         return error_set(error, ORB_BAD_ORBIFOLD,
-                         "%s is not a good orbifold: a single cone or corner has no tiling; take %d%d or three cones",
-                         signature->text, (int)n[0], (int)n[0]);
+                         "%s is not a good orbifold: a single cone or corner has no tiling; take %s%d%s%s%d%s or three cones",
+                         signature->text, left, (int)n[0], right, left, (int)n[0], right);
     if (n[0] != n[1])
         return error_set(error, ORB_BAD_ORBIFOLD,
-                         "%s is not a good orbifold: two cones or corners need equal orders, as in %d%d",
-                         signature->text, (int)n[0], (int)n[0]);
+                         "%s is not a good orbifold: two cones or corners need equal orders, as in %s%d%s%s%d%s",
+                         signature->text, left, (int)n[0], right, left, (int)n[0], right);
     return ORB_OK;
 }
 

@@ -23,7 +23,7 @@ typedef struct orb_system {
     int32_t *free_vertex;    /* [n_free] */
     int32_t *free_index;     /* [n_vertices] -1 where fixed */
     orb_pattern blocks;      /* between moving vertices */
-    int64_t *slot;           /* [n_edges] entry of `blocks` that the edge's mixed block goes to; -1 if an end is fixed */
+    int64_t *slot;           /* [n_edges] entry of `blocks` for the edge's mixed block; -1 if an end is fixed */
     int32_t *unknown;        /* [n_free+1] first row of each vertex; for complex systems the index itself */
     int64_t *first;          /* real: [2*entries] where in `values` each block's first and second column begin */
     orb_pattern pattern;     /* of the matrix itself; for complex systems that of the blocks (shared) */

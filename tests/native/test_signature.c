@@ -1,4 +1,6 @@
 /* Conway's notation. SPDX-License-Identifier: GPL-3.0-or-later */
+#include <string.h>
+
 #include "check.h"
 #include "signature.h"
 
@@ -74,6 +76,15 @@ TEST(orbifolds_that_do_not_exist) {
     check_refused("23", ORB_BAD_ORBIFOLD, -1);
     check_refused("*23", ORB_BAD_ORBIFOLD, -1);
     check_refused("*4", ORB_BAD_ORBIFOLD, -1);
+}
+
+/* The signature that an error advises is one that parses as meant. */
+TEST(advice_puts_long_orders_in_parentheses) {
+    orb_signature *signature = NULL;
+    orb_error error;
+    CHECK(signature_parse("(12)3", &signature, &error) == ORB_BAD_ORBIFOLD && strstr(error.message, "(12)(12)"));
+    CHECK(signature_parse("(12)", &signature, &error) == ORB_BAD_ORBIFOLD && strstr(error.message, "(12)(12)"));
+    CHECK(signature_parse("53", &signature, &error) == ORB_BAD_ORBIFOLD && strstr(error.message, "55"));
 }
 
 static orb_status match(const char *text, int32_t n, const int32_t *orders, int32_t *matched) {
