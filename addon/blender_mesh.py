@@ -229,12 +229,15 @@ def split_edges(mesh: bpy.types.Mesh, pairs: np.ndarray) -> None:
 
 
 def write_shape_key(obj: bpy.types.Object, positions: np.ndarray, name: str = SHAPE_KEY) -> bpy.types.ShapeKey:
-    """`positions` (n, 3) in the object's coordinates -> a shape key, created or replaced."""
+    """`positions` (n, 3) in the object's coordinates -> a shape key, created (with the value 0, so that the object
+    looks as before) or replaced."""
     mesh = obj.data
     if mesh.shape_keys is None:
         obj.shape_key_add(name="Basis", from_mix=False)
-    keys = mesh.shape_keys.key_blocks
-    key = keys.get(name) or obj.shape_key_add(name=name, from_mix=False)
+    key = mesh.shape_keys.key_blocks.get(name)
+    if key is None:
+        key = obj.shape_key_add(name=name, from_mix=False)
+        key.value = 0.0  # Blender 5 begins with 1
     flat = np.ascontiguousarray(positions, np.float32).ravel()
     if hasattr(key, "points"):
         key.points.foreach_set("co", flat)

@@ -59,6 +59,7 @@ seen = {
     "uv_triangles_without_area": int((area == 0).sum()),
     "seams": sum(edge.use_seam for edge in mesh.edges),
     "shape_keys": [key.name for key in mesh.shape_keys.key_blocks] if mesh.shape_keys else [],
+    "shape_key_values": [key.value for key in mesh.shape_keys.key_blocks[1:]] if mesh.shape_keys else [],
     "materials": len(mesh.materials),
     "material_reads_uv": any(getattr(node, "uv_map", "") == "Orbifold" for node in nodes),
     "images_without_data": [other.name for other in bpy.data.images if other is not image and not other.has_data

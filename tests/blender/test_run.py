@@ -114,6 +114,7 @@ def check_files(folder: Path, name: str, signature: str, cones: list[int]) -> di
     assert seen["uv_triangles_without_area"] == 0
     assert seen["seams"] >= len(cones) - 1
     assert ("Orbifold Sphere" in seen["shape_keys"]) == (report["orbifold"]["geometry"] == "spherical")
+    assert not any(seen["shape_key_values"]), "the object is not shown as it is"
     assert seen["materials"] == 1 and seen["material_reads_uv"] and seen["images_without_data"] == []
     # the two sides of a seam show the same colours, up to what the texture resolves
     assert seen["seam_colour_gap"] < 0.2 * seen["seam_colour_spread"], "the pattern breaks at the seams"

@@ -237,6 +237,11 @@ def check_sphere_key_is_a_sphere_of_the_objects_size():
         set_cones(obj, "432")
         bpy.ops.uv.orbifold_unwrap()
         assert np.array_equal(blender_mesh.read_vertices(obj.data), before)
+        key = obj.data.shape_keys.key_blocks["Orbifold Sphere"]
+        assert key.value == 0, "the object looks different"
+        key.value = 0.5
+        bpy.ops.uv.orbifold_unwrap()
+        assert obj.data.shape_keys.key_blocks["Orbifold Sphere"].value == 0.5, "the user's value is lost"
         points = blender_mesh.read_shape_key(obj).astype(np.float64)
         a = np.c_[2 * points, np.ones(len(points))]
         centre = np.linalg.lstsq(a, (points**2).sum(1), rcond=None)[0][:3]
