@@ -26,6 +26,10 @@ class MESH_MT_orbifold_signatures(bpy.types.Menu):
             return
         if not offers:
             layout.label(text="One cone alone has no orbifold: add another")
+        if orders:  # any order can be typed in the list, which writes it into the signature at once
+            own = core.format_signature(orders)
+            layout.operator("mesh.orbifold_set_signature", text=f"Orders of the List: {own}").signature = own
+            layout.separator()
         row = layout.row()
         for geometry, title in GEOMETRIES:
             fitting = [offer for offer in offers if offer.geometry == geometry]
@@ -36,10 +40,6 @@ class MESH_MT_orbifold_signatures(bpy.types.Menu):
                 for offer in fitting:
                     entry = column.operator("mesh.orbifold_set_signature", text=offer.signature)
                     entry.signature = offer.signature
-        if orders:  # any order can be typed in the list, which writes it into the signature at once
-            layout.separator()
-            own = core.format_signature(orders)
-            layout.operator("mesh.orbifold_set_signature", text=f"Orders of the List: {own}").signature = own
 
 
 def draw_unwrap_entry(self, _context: bpy.types.Context) -> None:
