@@ -86,8 +86,13 @@ def steps():
 
 
 def show_tab(area):
-    """Click the tab Orbifold at the sidebar's right edge, where Blender 3 leaves no other way."""
+    """Choose the tab Orbifold; Blender 3 leaves no other way than clicks at the sidebar's right edge."""
     region = next(r for r in area.regions if r.type == "UI")
+    if hasattr(region, "active_panel_category"):
+        region.active_panel_category = "Orbifold"
+        area.tag_redraw()
+        return
+    drawn.discard((area.as_pointer(), area.type))  # at first the panels of all tabs are drawn
     x = region.x + region.width - 12
     for y in range(region.y + region.height - 20, region.y + 20, -25):
         if y < region.y:
@@ -165,5 +170,6 @@ def drive(todo):
 
 
 enable()
+bpy.context.preferences.view.show_splash = False  # it would cover the picture
 watch_panels()
 drive(steps())
