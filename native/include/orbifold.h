@@ -1,6 +1,5 @@
 /* Orbifold UV: bijective, seamless maps of a triangle mesh onto an orbifold of the sphere, the plane or the
  * hyperbolic plane. SPDX-License-Identifier: GPL-3.0-or-later
- *
  *     orb_embedding *embedding = NULL;
  *     orb_error error = {0};
  *     orb_mesh_arrays mesh = {n, vertices, m, triangles};
@@ -26,7 +25,9 @@ extern "C" {
 #endif
 #define ORB_API __attribute__((visibility("default")))
 typedef enum orb_status {
-    ORB_OK = 0, ORB_OUT_OF_MEMORY, ORB_CANCELLED,
+    ORB_OK = 0,
+    ORB_OUT_OF_MEMORY,
+    ORB_CANCELLED,
     ORB_BAD_ARGUMENT,             /* a null array, a negative count, an unknown chart or kind of weights */
     ORB_NON_FINITE,               /* a coordinate that is not a finite number; elements: vertices */
     ORB_INDEX_OUT_OF_RANGE,       /* a triangle names a vertex that is not there; elements: triangles */
@@ -99,7 +100,6 @@ typedef struct orb_request {
 } orb_request;
 
 ORB_API orb_request orb_request_default(void); /* cotangent weights clamped at 0.01; all else zero */
-
 enum { ORB_MAX_SIGNATURE = 4096 }; /* characters */
 typedef struct orb_signature_info {
     int32_t curvature;      /* +1 spherical, 0 Euclidean, -1 hyperbolic */
@@ -129,7 +129,7 @@ typedef struct orb_view {
     const int32_t *cut_to_vertex; /* [n_copies] */
     const double *embedding;      /* [n_copies*3] (x, y, 1), unit sphere, or upper sheet of the hyperboloid */
     const double *embedding_low;  /* [n_copies*3] what double precision cut off: the point is the sum of the two */
-    const int32_t *cones, *orders; /* [n_cones] */
+    const int32_t *cones, *orders;/* [n_cones] */
     const double *weights;        /* [n_edges*3] rows i, j, w_ij as used */
     const int32_t *seams;         /* [n_seams*2] edges of the mesh across which the layout is not continuous */
     const char *signature, *geometry;
