@@ -30,12 +30,6 @@ int certificate_corner(const orb_geometry *geometry, const orb_point corners[3],
     return corner;
 }
 
-int certificate_orientation(const orb_geometry *geometry, const orb_point corners[3]) {
-    int sign;
-    certificate_corner(geometry, corners, &sign);
-    return sign;
-}
-
 static void triangle_corners(const orb_embedding *embedding, int32_t t, orb_point corners[3]) {
     for (int c = 0; c < 3; c++)
         corners[c] = embedding->placed[embedding->copies->triangles[3 * (size_t)t + (size_t)c]];
@@ -47,7 +41,9 @@ static orb_status check_orientation(orb_embedding *embedding, orb_error *error) 
     for (int32_t t = 0; t < embedding->mesh->n_triangles; t++) {
         orb_point corners[3];
         triangle_corners(embedding, t, corners);
-        if (certificate_orientation(embedding->tile->geometry, corners) > 0)
+        int sign;
+        certificate_corner(embedding->tile->geometry, corners, &sign);
+        if (sign > 0)
             continue;
         if (n_named < ORB_MAX_ELEMENTS)
             named[n_named++] = t;
