@@ -71,7 +71,7 @@ typedef struct orb_error {
 /* A closed (sphere-like) triangle mesh, consistently oriented. Vertices that no triangle uses are tolerated. */
 typedef struct orb_mesh_arrays {
     int32_t n_vertices;
-    const double *vertices;   /* [n_vertices*3] */
+    const double *vertices; /* [n_vertices*3] */
     int32_t n_triangles;
     const int32_t *triangles; /* [n_triangles*3] */
 } orb_mesh_arrays;
@@ -92,21 +92,21 @@ typedef struct orb_request {
     const int32_t *cones;  /* [n_cones] vertices, in the signature's order; the cut runs through them in turn */
     const int32_t *orders; /* [n_cones] order of each cone, a permutation of the signature's; NULL: as it stands */
     orb_weights weights;
-    double clamp;                /* least cotangent weight, > 0 */
-    int32_t n_edge_weights;      /* for ORB_WEIGHTS_GIVEN: one row for each edge of the mesh, in any sequence */
-    const double *edge_weights;  /* [n_edge_weights*3] rows i, j, w_ij > 0 */
-    orb_progress progress;       /* may be NULL */
-    void *user;                  /* its last argument */
+    double clamp;               /* least cotangent weight, > 0 */
+    int32_t n_edge_weights;     /* for ORB_WEIGHTS_GIVEN: one row for each edge of the mesh, in any sequence */
+    const double *edge_weights; /* [n_edge_weights*3] rows i, j, w_ij > 0 */
+    orb_progress progress;      /* may be NULL */
+    void *user;                 /* its last argument */
 } orb_request;
 
 ORB_API orb_request orb_request_default(void); /* cotangent weights clamped at 0.01; all else zero */
-enum { ORB_MAX_SIGNATURE = 4096 }; /* characters */
+enum { ORB_MAX_SIGNATURE = 4096 };             /* characters */
 typedef struct orb_signature_info {
-    int32_t curvature;      /* +1 spherical, 0 Euclidean, -1 hyperbolic */
-    const char *geometry;   /* "spherical", "euclidean", "hyperbolic" */
-    double euler;           /* Euler characteristic of the orbifold */
-    int32_t n_cones;        /* cones and mirror corners */
-    bool supported;         /* whether orb_embed takes it */
+    int32_t curvature;    /* +1 spherical, 0 Euclidean, -1 hyperbolic */
+    const char *geometry; /* "spherical", "euclidean", "hyperbolic" */
+    double euler;         /* Euler characteristic of the orbifold */
+    int32_t n_cones;      /* cones and mirror corners */
+    bool supported;       /* whether orb_embed takes it */
 } orb_signature_info;
 
 /* Errors: ORB_BAD_SIGNATURE (elements[0]: position), ORB_BAD_ORDER, ORB_BAD_ORBIFOLD. `orders` may be NULL or have
@@ -125,13 +125,13 @@ ORB_API void orb_embedding_free(orb_embedding *embedding);
  * vertex has because the mesh was cut; copy v for v < n_vertices is the vertex itself. */
 typedef struct orb_view {
     int32_t n_vertices, n_triangles, n_copies, n_cones, n_edges, n_seams;
-    const int32_t *cut_triangles; /* [n_triangles*3] the mesh's triangles, in copies */
-    const int32_t *cut_to_vertex; /* [n_copies] */
-    const double *embedding;      /* [n_copies*3] (x, y, 1), unit sphere, or upper sheet of the hyperboloid */
-    const double *embedding_low;  /* [n_copies*3] what double precision cut off: the point is the sum of the two */
-    const int32_t *cones, *orders;/* [n_cones] */
-    const double *weights;        /* [n_edges*3] rows i, j, w_ij as used */
-    const int32_t *seams;         /* [n_seams*2] edges of the mesh across which the layout is not continuous */
+    const int32_t *cut_triangles;  /* [n_triangles*3] the mesh's triangles, in copies */
+    const int32_t *cut_to_vertex;  /* [n_copies] */
+    const double *embedding;       /* [n_copies*3] (x, y, 1), unit sphere, or upper sheet of the hyperboloid */
+    const double *embedding_low;   /* [n_copies*3] what double precision cut off: the point is the sum of the two */
+    const int32_t *cones, *orders; /* [n_cones] */
+    const double *weights;         /* [n_edges*3] rows i, j, w_ij as used */
+    const int32_t *seams;          /* [n_seams*2] edges of the mesh across which the layout is not continuous */
     const char *signature, *geometry;
 } orb_view;
 ORB_API void orb_embedding_view(const orb_embedding *embedding, orb_view *view);
@@ -141,12 +141,12 @@ ORB_API void orb_embedding_view(const orb_embedding *embedding, orb_view *view);
 typedef struct orb_report {
     int32_t vertices, triangles, components, euler, boundary_loops, genus; /* of the mesh */
     double orbifold_euler;
-    int32_t iterations; /* steps of the minimiser */
-    double energy;      /* 1/2 sum over glued edges of w_ij d_ij^2 */
+    int32_t iterations;       /* steps of the minimiser */
+    double energy;            /* 1/2 sum over glued edges of w_ij d_ij^2 */
     double relative_gradient; /* max over vertices of |g_v| / sum_j w_vj d_vj */
     int64_t clamped_weights, factor_nonzeros;
-    int64_t flipped, flipped_float32; /* the second: UVs of the default chart rounded to float */
-    double seam_residual;             /* relative to the median edge */
+    int64_t flipped, flipped_float32;     /* the second: UVs of the default chart rounded to float */
+    double seam_residual;                 /* relative to the median edge */
     double angle_residual, area_residual; /* radians; relative (0 in the plane) */
     double quasi_conformal_mean, quasi_conformal_median, quasi_conformal_max; /* area weighted on the mesh */
     double log_area_std;        /* area-weighted standard deviation of log(area on the tile / area on the mesh) */

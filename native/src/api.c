@@ -89,8 +89,7 @@ static orb_status set_up_system(workshop *work, orb_error *error) {
     double start = monitor_clock();
     if (tile->rotates) {
         int32_t middle = work->disk->copy_vertex[work->disk->boundary[work->disk->corner_at[1] / 2]];
-        problem_hold_rotation(work->problem, middle < work->embedding->mesh->n_vertices ? middle : 0,
-                              tile->corners[0]);
+        problem_hold_rotation(work->problem, middle < work->embedding->mesh->n_vertices ? middle : 0, tile->corners[0]);
     }
     orb_status status = system_create(work->problem, true, &work->system, error);
     if (status != ORB_OK)
@@ -109,8 +108,8 @@ static orb_status set_up_system(workshop *work, orb_error *error) {
 static orb_status start_on_disk(workshop *work, const int32_t *vertex_order, orb_point *start, orb_error *error) {
     const orb_disk *disk = work->disk;
     if (!disk->refined)
-        return initial_embed(disk, work->embedding->tile, work->embedding->weights, vertex_order,
-                             work->system->n_free, start, error);
+        return initial_embed(disk, work->embedding->tile, work->embedding->weights, vertex_order, work->system->n_free,
+                             start, error);
     double *weights = malloc(((size_t)disk->mesh->n_edges + 1) * sizeof *weights);
     if (!weights)
         return error_memory(error);

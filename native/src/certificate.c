@@ -132,10 +132,11 @@ static orb_status check_angles(orb_embedding *embedding, double *area, orb_error
     free(sum);
     if (embedding->report.angle_residual < angle_tolerance)
         return ORB_OK;
-    return error_set_elements(error, ORB_CERTIFICATE_FAILED, ORB_VERTEX, &worst, 1, 1,
-                              "the angles around vertex %d are off by %.1e: dissolve degenerate faces near it, or pick a "
-                              "cone near it",
-                              (int)worst, embedding->report.angle_residual);
+    return error_set_elements(
+        error, ORB_CERTIFICATE_FAILED, ORB_VERTEX, &worst, 1, 1,
+        "the angles around vertex %d are off by %.1e: dissolve degenerate faces near it, or pick a "
+        "cone near it",
+        (int)worst, embedding->report.angle_residual);
 }
 
 orb_status certificate_check(orb_embedding *embedding, orb_error *error) {

@@ -111,8 +111,8 @@ static orb_status order_with(const interface *call, const orb_pattern *pattern, 
     }
     *too_large = common.status == CHOLMOD_TOO_LARGE;
     for (size_t k = 0; k < n && status == ORB_OK; k++)
-        permutation[k] = call->index_size == sizeof(int32_t) ? ((int32_t *)order)[k]
-                                                             : (int32_t)((SuiteSparse_long *)order)[k];
+        permutation[k] =
+            call->index_size == sizeof(int32_t) ? ((int32_t *)order)[k] : (int32_t)((SuiteSparse_long *)order)[k];
     free(order);
     call->free_sparse(&matrix, &common);
     call->finish(&common);
@@ -198,8 +198,13 @@ orb_status cholesky_solve(orb_cholesky *cholesky, const double *b, int32_t n_rig
     cholmod_common *common = &cholesky->common;
     size_t n = cholesky->factor->n, columns = (size_t)n_right, parts = cholesky->is_complex ? 2 : 1;
     int xtype = cholesky->is_complex ? CHOLMOD_COMPLEX : CHOLMOD_REAL;
-    cholmod_dense right = {.nrow = n, .ncol = columns, .nzmax = n * columns, .d = n, .x = (void *)(uintptr_t)b,
-                           .xtype = xtype, .dtype = CHOLMOD_DOUBLE};
+    cholmod_dense right = {.nrow = n,
+                           .ncol = columns,
+                           .nzmax = n * columns,
+                           .d = n,
+                           .x = (void *)(uintptr_t)b,
+                           .xtype = xtype,
+                           .dtype = CHOLMOD_DOUBLE};
     /* solve2 would make these itself, but forgets that the first failed when the second does not. */
     if (!call->ensure_dense(&cholesky->work_y, n, columns, n, xtype, common) ||
         !call->ensure_dense(&cholesky->work_e, columns, cholesky->factor->maxesize, columns, xtype, common) ||

@@ -9,10 +9,10 @@
 #include "vector3.h"
 
 typedef struct affine {
-    double area;          /* on the mesh, scaled; 0: none to speak of, and then all else is unset */
-    double tile_area;     /* in the geometry */
-    double complex a, b;  /* the map y -> a y + b conj(y) from a plane holding the triangle, scaled */
-    double determinant;   /* |a|^2 - |b|^2, which for thin triangles is lost in the difference */
+    double area;         /* on the mesh, scaled; 0: none to speak of, and then all else is unset */
+    double tile_area;    /* in the geometry */
+    double complex a, b; /* the map y -> a y + b conj(y) from a plane holding the triangle, scaled */
+    double determinant;  /* |a|^2 - |b|^2, which for thin triangles is lost in the difference */
 } affine;
 
 /* The power of two that brings the largest side along an axis to about 1. Nothing that is measured here depends on

@@ -10,16 +10,16 @@
 struct orb_embedding {
     orb_mesh *mesh;
     orb_signature *signature;
-    int32_t *cones;      /* [tile->n_cones] vertices */
-    orb_tile *tile;      /* after the affine modulus, where there is one */
+    int32_t *cones; /* [tile->n_cones] vertices */
+    orb_tile *tile; /* after the affine modulus, where there is one */
     orb_copies *copies;
-    orb_point *position; /* [mesh->n_vertices] isolated vertices: the origin */
-    orb_point *placed;   /* [copies->n_copies] position of each copy */
-    double *weights;     /* [mesh->n_edges] */
-    double *edge_weights;/* [mesh->n_edges*3] rows i, j, w_ij for the view */
+    orb_point *position;                   /* [mesh->n_vertices] isolated vertices: the origin */
+    orb_point *placed;                     /* [copies->n_copies] position of each copy */
+    double *weights;                       /* [mesh->n_edges] */
+    double *edge_weights;                  /* [mesh->n_edges*3] rows i, j, w_ij for the view */
     double *coordinates, *coordinates_low; /* [copies->n_copies*3] for the view */
     int32_t n_seams;
-    int32_t *seams;      /* [n_seams*2] */
+    int32_t *seams; /* [n_seams*2] */
     orb_report report;
 };
 

@@ -5,10 +5,9 @@
 #include <stdio.h>
 #include <string.h>
 
-const char *orb_status_name(orb_status status)
-{
-#define NAME(constant) \
-    case constant: \
+const char *orb_status_name(orb_status status) {
+#define NAME(constant)                                                                                                 \
+    case constant:                                                                                                     \
         return #constant
     switch (status) {
         NAME(ORB_OK);
@@ -44,25 +43,28 @@ const char *orb_status_name(orb_status status)
 
 /* Writes the sentence. One that is too long loses its end, but never half a UTF-8 character, so that it can still
  * be decoded. */
-static void write_message(orb_error *error, const char *format, va_list arguments)
-{
+static void write_message(orb_error *error, const char *format, va_list arguments) {
     const int needed = vsnprintf(error->message, sizeof error->message, format, arguments);
     if (needed < 0) {
         error->message[0] = '\0';
         return;
     }
-    if ((size_t)needed < sizeof error->message) return;
+    if ((size_t)needed < sizeof error->message)
+        return;
     size_t end = strlen(error->message), start = end;
-    while (start > 0 && ((unsigned char)error->message[start - 1] & 0xC0u) == 0x80u) start--;
-    if (start == 0 || (unsigned char)error->message[start - 1] < 0x80u) return; /* it ends on an ASCII character */
+    while (start > 0 && ((unsigned char)error->message[start - 1] & 0xC0u) == 0x80u)
+        start--;
+    if (start == 0 || (unsigned char)error->message[start - 1] < 0x80u)
+        return; /* it ends on an ASCII character */
     const unsigned char lead = (unsigned char)error->message[start - 1];
     const size_t length = lead >= 0xF0u ? 4 : lead >= 0xE0u ? 3 : 2;
-    if (end - (start - 1) < length) error->message[start - 1] = '\0';
+    if (end - (start - 1) < length)
+        error->message[start - 1] = '\0';
 }
 
-orb_status error_set(orb_error *error, orb_status status, const char *format, ...)
-{
-    if (!error) return status;
+orb_status error_set(orb_error *error, orb_status status, const char *format, ...) {
+    if (!error)
+        return status;
     memset(error, 0, sizeof *error);
     error->status = status;
     va_list arguments;
@@ -73,15 +75,16 @@ orb_status error_set(orb_error *error, orb_status status, const char *format, ..
 }
 
 orb_status error_set_elements(orb_error *error, orb_status status, orb_element element, const int32_t *elements,
-                              int32_t entries, int64_t found, const char *format, ...)
-{
-    if (!error) return status;
+                              int32_t entries, int64_t found, const char *format, ...) {
+    if (!error)
+        return status;
     memset(error, 0, sizeof *error);
     error->status = status;
     error->element = element;
     error->n_elements = entries < ORB_MAX_ELEMENTS ? entries : ORB_MAX_ELEMENTS;
     error->n_found = found;
-    for (int32_t i = 0; i < error->n_elements; i++) error->elements[i] = elements[i];
+    for (int32_t i = 0; i < error->n_elements; i++)
+        error->elements[i] = elements[i];
     va_list arguments;
     va_start(arguments, format);
     write_message(error, format, arguments);
@@ -89,34 +92,33 @@ orb_status error_set_elements(orb_error *error, orb_status status, orb_element e
     return status;
 }
 
-orb_status error_memory(orb_error *error)
-{
+orb_status error_memory(orb_error *error) {
     return error_set(error, ORB_OUT_OF_MEMORY, "out of memory: close other programs or use a coarser mesh");
 }
 
 /* Inserts `width` entries into the ascending list of groups of that width, dropping the last group if it is full. */
-static void found_insert(orb_found *found, const int32_t *group, int32_t width)
-{
+static void found_insert(orb_found *found, const int32_t *group, int32_t width) {
     found->found++;
     int32_t at = found->entries;
     while (at > 0) {
         const int32_t *before = found->elements + at - width;
-        if (before[0] < group[0] || (before[0] == group[0] && before[width - 1] <= group[width - 1])) break;
+        if (before[0] < group[0] || (before[0] == group[0] && before[width - 1] <= group[width - 1]))
+            break;
         at -= width;
     }
-    if (at >= ORB_MAX_ELEMENTS) return;
-    if (found->entries < ORB_MAX_ELEMENTS) found->entries += width;
-    for (int32_t i = found->entries - 1; i >= at + width; i--) found->elements[i] = found->elements[i - width];
-    for (int32_t i = 0; i < width; i++) found->elements[at + i] = group[i];
+    if (at >= ORB_MAX_ELEMENTS)
+        return;
+    if (found->entries < ORB_MAX_ELEMENTS)
+        found->entries += width;
+    for (int32_t i = found->entries - 1; i >= at + width; i--)
+        found->elements[i] = found->elements[i - width];
+    for (int32_t i = 0; i < width; i++)
+        found->elements[at + i] = group[i];
 }
 
-void found_add(orb_found *found, int32_t element)
-{
-    found_insert(found, &element, 1);
-}
+void found_add(orb_found *found, int32_t element) { found_insert(found, &element, 1); }
 
-void found_add_edge(orb_found *found, int32_t vertex, int32_t other)
-{
+void found_add_edge(orb_found *found, int32_t vertex, int32_t other) {
     const int32_t edge[2] = {vertex < other ? vertex : other, vertex < other ? other : vertex};
     found_insert(found, edge, 2);
 }

@@ -13,8 +13,8 @@ __attribute__((format(printf, 3, 4))) orb_status error_set(orb_error *error, orb
  * kept in the order given; `found` counts the offending elements in all. */
 __attribute__((format(printf, 7, 8))) orb_status error_set_elements(orb_error *error, orb_status status,
                                                                     orb_element element, const int32_t *elements,
-                                                                    int32_t entries, int64_t found,
-                                                                    const char *format, ...);
+                                                                    int32_t entries, int64_t found, const char *format,
+                                                                    ...);
 
 /* Elements found at fault, in any sequence: the least ORB_MAX_ELEMENTS entries are kept, ascending (edges by lower
  * vertex, then higher), and all are counted. Start from {0}; use one record for one kind of element. */

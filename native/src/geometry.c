@@ -161,9 +161,7 @@ orb_isometry isometry_compose(const orb_geometry *geometry, orb_isometry outer, 
     return scaled(a, b);
 }
 
-orb_isometry isometry_inverse(orb_isometry h) {
-    return (orb_isometry){point_conjugate(h.a), {-h.b.z, -h.b.low}};
-}
+orb_isometry isometry_inverse(orb_isometry h) { return (orb_isometry){point_conjugate(h.a), {-h.b.z, -h.b.low}}; }
 
 /* conj(a) - K conj(b) z */
 static ddc denominator(const orb_geometry *geometry, orb_isometry h, ddc z) {

@@ -15,10 +15,10 @@ typedef struct joiner {
     const orb_tile *tile;
     orb_copies *copies;
     int32_t room_isometries, room_copies;
-    int32_t *next_copy;  /* [room_copies] chain of the copies of one vertex */
-    int32_t *cone_of;    /* [mesh->n_vertices] corner number of the tile, or -1 */
-    int32_t *segment;    /* [disk->mesh->n_triangles*3] s on the left bank's half-edges, -s on the right bank's */
-    int32_t *element;    /* [disk->mesh->n_triangles] group element of each piece; -1 before it is met */
+    int32_t *next_copy;     /* [room_copies] chain of the copies of one vertex */
+    int32_t *cone_of;       /* [mesh->n_vertices] corner number of the tile, or -1 */
+    int32_t *segment;       /* [disk->mesh->n_triangles*3] s on the left bank's half-edges, -s on the right bank's */
+    int32_t *element;       /* [disk->mesh->n_triangles] group element of each piece; -1 before it is met */
     int32_t *first, *piece; /* pieces of input triangle t: piece[first[t]] ... piece[first[t + 1] - 1] */
     int32_t *queue;
 } joiner;

@@ -60,10 +60,10 @@ static void place_boundary(const orb_disk *disk, const orb_tile *tile, double *s
 /* The Laplacian of the disk's inner vertices, and what the boundary contributes. */
 typedef struct laplacian {
     int32_t n;
-    int32_t *index;  /* [n_copies] row of an inner copy; -1 on the boundary */
-    int32_t *ends;   /* [n_edges*2] copies of each edge */
-    int64_t *slot;   /* [n_edges] */
-    int32_t *order;  /* [n] */
+    int32_t *index; /* [n_copies] row of an inner copy; -1 on the boundary */
+    int32_t *ends;  /* [n_edges*2] copies of each edge */
+    int64_t *slot;  /* [n_edges] */
+    int32_t *order; /* [n] */
     orb_pattern pattern;
     double *values, *right; /* right: [2*n] x then y */
 } laplacian;
@@ -153,8 +153,8 @@ static orb_status solve_laplacian(laplacian *system, const int32_t *vertex_order
     return status;
 }
 
-orb_status initial_embed(const orb_disk *disk, const orb_tile *tile, const double *weights,
-                         const int32_t *vertex_order, int32_t n_order, orb_point *position, orb_error *error) {
+orb_status initial_embed(const orb_disk *disk, const orb_tile *tile, const double *weights, const int32_t *vertex_order,
+                         int32_t n_order, orb_point *position, orb_error *error) {
     laplacian system = {0};
     double complex *chart = malloc(((size_t)disk->n_copies + 1) * sizeof *chart);
     double *share = malloc(((size_t)disk->n_boundary + 1) * sizeof *share);
@@ -173,8 +173,8 @@ orb_status initial_embed(const orb_disk *disk, const orb_tile *tile, const doubl
     for (int32_t u = 0; u < disk->n_copies; u++) {
         int32_t row = system.index[u];
         if (row >= 0)
-            position[u] = geometry_from_convex_chart(tile->geometry,
-                                                     CMPLX(system.right[row], system.right[system.n + row]));
+            position[u] =
+                geometry_from_convex_chart(tile->geometry, CMPLX(system.right[row], system.right[system.n + row]));
     }
 done:
     free(chart);

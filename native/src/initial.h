@@ -14,7 +14,7 @@ void initial_cones_only(const orb_disk *disk, const orb_tile *tile, orb_point *p
 
 /* weights[disk->mesh->n_edges] > 0. `vertex_order` [n_order]: a fill-reducing ordering of (at least) the disk's inner
  * vertices; NULL: one is computed. */
-orb_status initial_embed(const orb_disk *disk, const orb_tile *tile, const double *weights,
-                         const int32_t *vertex_order, int32_t n_order, orb_point *position, orb_error *error);
+orb_status initial_embed(const orb_disk *disk, const orb_tile *tile, const double *weights, const int32_t *vertex_order,
+                         int32_t n_order, orb_point *position, orb_error *error);
 
 #endif

@@ -35,8 +35,7 @@ struct orb_job {
 };
 
 /* *copy = the first `count` elements of source; NULL for no array (orb_embed says whether that is an error). */
-static bool job_copy(const void *source, int64_t count, size_t size, void **copy)
-{
+static bool job_copy(const void *source, int64_t count, size_t size, void **copy) {
     *copy = NULL;
     if (!source || count <= 0)
         return true;
@@ -49,8 +48,7 @@ static bool job_copy(const void *source, int64_t count, size_t size, void **copy
     return true;
 }
 
-static void job_free(orb_job *job)
-{
+static void job_free(orb_job *job) {
     if (!job)
         return;
     orb_embedding_free(job->embedding);
@@ -64,8 +62,7 @@ static void job_free(orb_job *job)
 }
 
 /* Called with the mutex held; gives it up. The last holder frees the job. */
-static void job_release(orb_job *job)
-{
+static void job_release(orb_job *job) {
     bool last = --job->holders == 0;
     pthread_mutex_unlock(&job->mutex);
     if (!last)
@@ -75,8 +72,7 @@ static void job_release(orb_job *job)
     job_free(job);
 }
 
-static bool job_progress(const char *stage, double fraction, void *user)
-{
+static bool job_progress(const char *stage, double fraction, void *user) {
     orb_job *job = user;
     pthread_mutex_lock(&job->mutex);
     size_t length = 0;
@@ -90,8 +86,7 @@ static bool job_progress(const char *stage, double fraction, void *user)
     return go_on;
 }
 
-static void *job_run(void *user)
-{
+static void *job_run(void *user) {
     orb_job *job = user;
     orb_embedding *embedding = NULL;
     orb_error error = {0};
@@ -108,20 +103,19 @@ static void *job_run(void *user)
 }
 
 /* A job with copies of the arrays, its mutex not yet made; NULL when memory runs out. */
-static orb_job *job_create(const orb_mesh_arrays *mesh, const orb_request *request)
-{
+static orb_job *job_create(const orb_mesh_arrays *mesh, const orb_request *request) {
     orb_job *job = calloc(1, sizeof *job);
     if (!job)
         return NULL;
     void *vertices = NULL, *triangles = NULL, *signature = NULL, *cones = NULL, *orders = NULL, *weights = NULL;
-    bool copied = job_copy(mesh->vertices, 3 * (int64_t)mesh->n_vertices, sizeof *mesh->vertices, &vertices) &&
-                  job_copy(mesh->triangles, 3 * (int64_t)mesh->n_triangles, sizeof *mesh->triangles, &triangles) &&
-                  job_copy(request->cones, request->n_cones, sizeof *request->cones, &cones) &&
-                  job_copy(request->orders, request->n_cones, sizeof *request->orders, &orders) &&
-                  job_copy(request->edge_weights, 3 * (int64_t)request->n_edge_weights, sizeof *request->edge_weights,
-                           &weights) &&
-                  (!request->signature ||
-                   job_copy(request->signature, (int64_t)strlen(request->signature) + 1, 1, &signature));
+    bool copied =
+        job_copy(mesh->vertices, 3 * (int64_t)mesh->n_vertices, sizeof *mesh->vertices, &vertices) &&
+        job_copy(mesh->triangles, 3 * (int64_t)mesh->n_triangles, sizeof *mesh->triangles, &triangles) &&
+        job_copy(request->cones, request->n_cones, sizeof *request->cones, &cones) &&
+        job_copy(request->orders, request->n_cones, sizeof *request->orders, &orders) &&
+        job_copy(request->edge_weights, 3 * (int64_t)request->n_edge_weights, sizeof *request->edge_weights,
+                 &weights) &&
+        (!request->signature || job_copy(request->signature, (int64_t)strlen(request->signature) + 1, 1, &signature));
     job->vertices = vertices;
     job->triangles = triangles;
     job->signature = signature;
@@ -145,8 +139,7 @@ static orb_job *job_create(const orb_mesh_arrays *mesh, const orb_request *reque
 
 /* Starts the thread with every signal blocked except those that are its own faults, so that a signal to the process
  * (an interrupt, a timer) is handled by a thread of the caller's, and a crash handler still sees a crash. */
-static int job_spawn(orb_job *job)
-{
+static int job_spawn(orb_job *job) {
     static const int faults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGABRT, SIGSYS};
     sigset_t blocked, before;
     sigfillset(&blocked);
@@ -168,8 +161,7 @@ static int job_spawn(orb_job *job)
     return fault;
 }
 
-orb_status orb_job_start(const orb_mesh_arrays *mesh, const orb_request *request, orb_job **job, orb_error *error)
-{
+orb_status orb_job_start(const orb_mesh_arrays *mesh, const orb_request *request, orb_job **job, orb_error *error) {
     if (job)
         *job = NULL;
     if (!mesh || !request || !job)
@@ -197,8 +189,7 @@ orb_status orb_job_start(const orb_mesh_arrays *mesh, const orb_request *request
     return ORB_OK;
 }
 
-bool orb_job_poll(orb_job *job, char *stage, double *fraction)
-{
+bool orb_job_poll(orb_job *job, char *stage, double *fraction) {
     if (stage)
         *stage = '\0';
     if (fraction)
@@ -215,8 +206,7 @@ bool orb_job_poll(orb_job *job, char *stage, double *fraction)
     return over;
 }
 
-void orb_job_cancel(orb_job *job)
-{
+void orb_job_cancel(orb_job *job) {
     if (!job)
         return;
     pthread_mutex_lock(&job->mutex);
@@ -225,8 +215,7 @@ void orb_job_cancel(orb_job *job)
     pthread_mutex_unlock(&job->mutex);
 }
 
-orb_status orb_job_finish(orb_job *job, orb_embedding **embedding, orb_error *error)
-{
+orb_status orb_job_finish(orb_job *job, orb_embedding **embedding, orb_error *error) {
     if (embedding)
         *embedding = NULL;
     if (!job)

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-enum { MAX_ROTATIONS = 6 }; /* a lattice admits rotations of order 1, 2, 3, 4 and 6 only */
+enum { MAX_ROTATIONS = 6 };           /* a lattice admits rotations of order 1, 2, 3, 4 and 6 only */
 static const double tolerance = 1e-9; /* of the longest vector met; the isometries are good to 1e-16 */
 
 /* w -> turn w + shift */

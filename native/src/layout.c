@@ -27,7 +27,7 @@ typedef struct chart_row {
     orb_chart chart;
     const char *name;
     orb_status (*prepare)(const orb_embedding *embedding, chart_frame *frame, orb_error *error); /* may be NULL */
-    double complex (*map)(const chart_frame *frame, orb_point p); /* u + i v */
+    double complex (*map)(const chart_frame *frame, orb_point p);                                /* u + i v */
     void (*corners)(double complex uv[3]); /* joins the corners of a triangle; may be NULL */
     chart_finish finish;
 } chart_row;
@@ -155,10 +155,9 @@ static orb_status error_no_chart(orb_chart chart, const orb_geometry *geometry, 
     for (int i = 0; i < N_CHARTS; i++)
         if (find_chart(charts[i].chart, geometry))
             fit[n++] = charts[i].name;
-    return error_set(error, ORB_BAD_ARGUMENT,
-                     "the chart %s%s does not fit a layout that is %s: choose %s%s%s%s%s", row ? "" : "asked for",
-                     row ? row->name : "", geometry_name(geometry), fit[0], n > 2 ? ", " : "", n > 2 ? fit[1] : "",
-                     n > 1 ? " or " : "", n > 1 ? fit[n - 1] : "");
+    return error_set(error, ORB_BAD_ARGUMENT, "the chart %s%s does not fit a layout that is %s: choose %s%s%s%s%s",
+                     row ? "" : "asked for", row ? row->name : "", geometry_name(geometry), fit[0], n > 2 ? ", " : "",
+                     n > 2 ? fit[1] : "", n > 1 ? " or " : "", n > 1 ? fit[n - 1] : "");
 }
 
 static void finish_uv(chart_finish finish, int64_t n_corners, double *uv) {

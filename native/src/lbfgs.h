@@ -12,11 +12,11 @@
 enum { LBFGS_PAIRS = 5 };
 
 typedef struct orb_lbfgs {
-    int32_t n;                            /* tangent vectors have n complex entries */
-    int32_t count, newest;                /* pairs kept, and where the newest is */
+    int32_t n;             /* tangent vectors have n complex entries */
+    int32_t count, newest; /* pairs kept, and where the newest is */
     double complex *step[LBFGS_PAIRS], *change[LBFGS_PAIRS];
-    double curvature[LBFGS_PAIRS];        /* <step, change> > 0 */
-    double weight[LBFGS_PAIRS];           /* scratch between the two halves of the recursion */
+    double curvature[LBFGS_PAIRS]; /* <step, change> > 0 */
+    double weight[LBFGS_PAIRS];    /* scratch between the two halves of the recursion */
 } orb_lbfgs;
 
 orb_status lbfgs_create(int32_t n, orb_lbfgs **memory, orb_error *error);

@@ -20,16 +20,12 @@ typedef struct workspace {
     int32_t *spare; /* [n_vertices] */
 } workspace;
 
-static int32_t opposite_vertex(const orb_mesh *mesh, int32_t h)
-{
-    return mesh->triangles[halfedge_previous(h)];
-}
+static int32_t opposite_vertex(const orb_mesh *mesh, int32_t h) { return mesh->triangles[halfedge_previous(h)]; }
 
 /* --- sorting and linking the half-edges ----------------------------------------------------------------------- */
 
 /* Turns counts of keys 0 ... n - 1 into the place of each key's first item. */
-static void counts_to_places(int32_t *count, int32_t n)
-{
+static void counts_to_places(int32_t *count, int32_t n) {
     int32_t place = 0;
     for (int32_t i = 0; i < n; i++) {
         const int32_t here = count[i];
@@ -41,8 +37,7 @@ static void counts_to_places(int32_t *count, int32_t n)
 /* Two stable counting sorts, the less significant key first. A key's place, moved on with each of its items, ends as
  * one past the last of them. The first sort's result lies in mesh->edge and mesh->twin, which are not in use yet:
  * fresh memory would cost as much time as the sort. */
-static void sort_halfedges(orb_mesh *mesh, workspace *work)
-{
+static void sort_halfedges(orb_mesh *mesh, workspace *work) {
     const int32_t n = 3 * mesh->n_triangles;
     int32_t *high_place = work->spare, *low_place = work->end, *by_high_low = mesh->edge, *by_high = mesh->twin;
     memset(high_place, 0, (size_t)mesh->n_vertices * sizeof *high_place);
@@ -66,11 +61,12 @@ static void sort_halfedges(orb_mesh *mesh, workspace *work)
 }
 
 /* One past the last half-edge on the edge of sorted[begin]; *low, at first 0, is moved on to its lower vertex. */
-static int32_t edge_end(const workspace *work, int32_t begin, int32_t *low)
-{
-    while (work->end[*low] <= begin) ++*low;
+static int32_t edge_end(const workspace *work, int32_t begin, int32_t *low) {
+    while (work->end[*low] <= begin)
+        ++*low;
     int32_t end = begin + 1;
-    while (end < work->end[*low] && work->sorted[end].vertex == work->sorted[begin].vertex) end++;
+    while (end < work->end[*low] && work->sorted[end].vertex == work->sorted[begin].vertex)
+        end++;
     return end;
 }
 
@@ -79,59 +75,62 @@ typedef struct standing {
     int32_t apex, triangle;
 } standing;
 
-static int compare_standing(const void *left, const void *right)
-{
+static int compare_standing(const void *left, const void *right) {
     const standing *a = left, *b = right;
-    if (a->apex != b->apex) return a->apex < b->apex ? -1 : 1;
+    if (a->apex != b->apex)
+        return a->apex < b->apex ? -1 : 1;
     return (a->triangle > b->triangle) - (a->triangle < b->triangle);
 }
 
 /* Adds the triangles on one edge that repeat another one, of those that have the edge between their two lower
  * vertices (so that each pair is met on one edge only). */
 static orb_status find_repeated(const orb_mesh *mesh, const side *sides, int32_t n, orb_found *repeated,
-                                orb_error *error)
-{
+                                orb_error *error) {
     const int32_t high = sides[0].vertex;
     if (n == 2) { /* nearly always; sorting it would cost more than all else here */
         const int32_t h = sides[0].halfedge, g = sides[1].halfedge, apex = opposite_vertex(mesh, h);
-        if (apex > high && apex == opposite_vertex(mesh, g)) found_add(repeated, (h > g ? h : g) / 3);
+        if (apex > high && apex == opposite_vertex(mesh, g))
+            found_add(repeated, (h > g ? h : g) / 3);
         return ORB_OK;
     }
     standing *standings = malloc((size_t)n * sizeof *standings);
-    if (!standings) return error_memory(error);
+    if (!standings)
+        return error_memory(error);
     size_t kept = 0;
     for (int32_t i = 0; i < n; i++) {
         const int32_t apex = opposite_vertex(mesh, sides[i].halfedge);
-        if (apex > high) standings[kept++] = (standing){apex, sides[i].halfedge / 3};
+        if (apex > high)
+            standings[kept++] = (standing){apex, sides[i].halfedge / 3};
     }
     qsort(standings, kept, sizeof *standings, compare_standing);
     for (size_t i = 1; i < kept; i++)
-        if (standings[i].apex == standings[i - 1].apex) found_add(repeated, standings[i].triangle);
+        if (standings[i].apex == standings[i - 1].apex)
+            found_add(repeated, standings[i].triangle);
     free(standings);
     return ORB_OK;
 }
 
 /* Repeated triangles, edges with more than two triangles, neighbours that disagree about the outside. */
-static orb_status check_edges(const orb_mesh *mesh, const workspace *work, orb_error *error)
-{
+static orb_status check_edges(const orb_mesh *mesh, const workspace *work, orb_error *error) {
     orb_found repeated = {0}, crowded = {0}, disagreeing = {0};
     for (int32_t begin = 0, low = 0, end; begin < 3 * mesh->n_triangles; begin = end) {
         end = edge_end(work, begin, &low);
-        if (end - begin < 2) continue;
+        if (end - begin < 2)
+            continue;
         const side *sides = work->sorted + begin;
         const orb_status status = find_repeated(mesh, sides, end - begin, &repeated, error);
-        if (status != ORB_OK) return status;
+        if (status != ORB_OK)
+            return status;
         if (end - begin > 2)
             found_add_edge(&crowded, low, sides[0].vertex);
         else if (halfedge_from(mesh, sides[0].halfedge) == halfedge_from(mesh, sides[1].halfedge))
             found_add_edge(&disagreeing, low, sides[0].vertex);
     }
     if (repeated.found > 0)
-        return error_set_elements(error, ORB_REPEATED_TRIANGLE, ORB_TRIANGLE, repeated.elements, repeated.entries,
-                                  repeated.found,
-                                  "%lld %s the three vertices of another one, first %d: delete the doubled faces",
-                                  (long long)repeated.found, repeated.found == 1 ? "triangle has" : "triangles have",
-                                  (int)repeated.elements[0]);
+        return error_set_elements(
+            error, ORB_REPEATED_TRIANGLE, ORB_TRIANGLE, repeated.elements, repeated.entries, repeated.found,
+            "%lld %s the three vertices of another one, first %d: delete the doubled faces", (long long)repeated.found,
+            repeated.found == 1 ? "triangle has" : "triangles have", (int)repeated.elements[0]);
     if (crowded.found > 0)
         return error_set_elements(error, ORB_NON_MANIFOLD_EDGE, ORB_EDGE, crowded.elements, crowded.entries,
                                   crowded.found,
@@ -150,20 +149,22 @@ static orb_status check_edges(const orb_mesh *mesh, const workspace *work, orb_e
 }
 
 /* Numbers the edges and pairs their half-edges; at most two lie on each. */
-static orb_status link_halfedges(orb_mesh *mesh, const workspace *work, orb_error *error)
-{
+static orb_status link_halfedges(orb_mesh *mesh, const workspace *work, orb_error *error) {
     const int32_t n = 3 * mesh->n_triangles;
     mesh->n_edges = 0;
-    for (int32_t begin = 0, low = 0; begin < n; begin = edge_end(work, begin, &low)) mesh->n_edges++;
+    for (int32_t begin = 0, low = 0; begin < n; begin = edge_end(work, begin, &low))
+        mesh->n_edges++;
     mesh->edge_halfedge = malloc((size_t)mesh->n_edges * sizeof *mesh->edge_halfedge);
-    if (!mesh->edge_halfedge) return error_memory(error);
+    if (!mesh->edge_halfedge)
+        return error_memory(error);
     for (int32_t begin = 0, low = 0, e = 0, end; begin < n; begin = end, e++) {
         end = edge_end(work, begin, &low);
         const int32_t h = work->sorted[begin].halfedge, g = end - begin == 2 ? work->sorted[begin + 1].halfedge : -1;
         mesh->edge_halfedge[e] = h;
         mesh->edge[h] = e;
         mesh->twin[h] = g;
-        if (g < 0) continue;
+        if (g < 0)
+            continue;
         mesh->edge[g] = e;
         mesh->twin[g] = h;
     }
@@ -174,8 +175,7 @@ static orb_status link_halfedges(orb_mesh *mesh, const workspace *work, orb_erro
 
 /* Gives each vertex its half-edge and checks that turning around it meets all of its triangles. `corners`
  * [n_vertices] is overwritten. */
-static orb_status link_vertices(orb_mesh *mesh, int32_t *corners, orb_error *error)
-{
+static orb_status link_vertices(orb_mesh *mesh, int32_t *corners, orb_error *error) {
     const int32_t n = 3 * mesh->n_triangles;
     for (int32_t v = 0; v < mesh->n_vertices; v++) {
         mesh->vertex_halfedge[v] = -1;
@@ -183,35 +183,37 @@ static orb_status link_vertices(orb_mesh *mesh, int32_t *corners, orb_error *err
     }
     for (int32_t h = 0; h < n; h++) {
         const int32_t v = halfedge_from(mesh, h);
-        if (corners[v]++ == 0 || mesh->twin[h] < 0) mesh->vertex_halfedge[v] = h;
+        if (corners[v]++ == 0 || mesh->twin[h] < 0)
+            mesh->vertex_halfedge[v] = h;
     }
     orb_found pinched = {0};
     mesh->n_used_vertices = 0;
     for (int32_t v = 0; v < mesh->n_vertices; v++) {
         const int32_t start = mesh->vertex_halfedge[v];
-        if (start < 0) continue;
+        if (start < 0)
+            continue;
         mesh->n_used_vertices++;
         int32_t met = 0, h = start;
         do {
             met++;
             h = mesh->twin[halfedge_previous(h)];
         } while (h >= 0 && h != start);
-        if (met != corners[v]) found_add(&pinched, v);
+        if (met != corners[v])
+            found_add(&pinched, v);
     }
-    if (pinched.found == 0) return ORB_OK;
-    return error_set_elements(error, ORB_NON_MANIFOLD_VERTEX, ORB_VERTEX, pinched.elements, pinched.entries,
-                              pinched.found,
-                              "%lld %s parts of the surface that touch in that point only, first %d: rip it (V) or "
-                              "join the parts along an edge",
-                              (long long)pinched.found, pinched.found == 1 ? "vertex joins" : "vertices join",
-                              (int)pinched.elements[0]);
+    if (pinched.found == 0)
+        return ORB_OK;
+    return error_set_elements(
+        error, ORB_NON_MANIFOLD_VERTEX, ORB_VERTEX, pinched.elements, pinched.entries, pinched.found,
+        "%lld %s parts of the surface that touch in that point only, first %d: rip it (V) or "
+        "join the parts along an edge",
+        (long long)pinched.found, pinched.found == 1 ? "vertex joins" : "vertices join", (int)pinched.elements[0]);
 }
 
 /* --- counts --------------------------------------------------------------------------------------------------- */
 
 /* Floods over the triangles; adds the lowest vertex of each component to `lowest`. */
-static orb_status find_components(const orb_mesh *mesh, orb_found *lowest, orb_error *error)
-{
+static orb_status find_components(const orb_mesh *mesh, orb_found *lowest, orb_error *error) {
     bool *seen = calloc((size_t)mesh->n_triangles, sizeof *seen);
     int32_t *stack = malloc((size_t)mesh->n_triangles * sizeof *stack);
     orb_status status = ORB_OK;
@@ -220,15 +222,18 @@ static orb_status find_components(const orb_mesh *mesh, orb_found *lowest, orb_e
         goto done;
     }
     for (int32_t seed = 0; seed < mesh->n_triangles; seed++) {
-        if (seen[seed]) continue;
+        if (seen[seed])
+            continue;
         int32_t height = 0, least = INT32_MAX;
         stack[height++] = seed;
         seen[seed] = true;
         while (height > 0) {
             const int32_t t = stack[--height];
             for (int32_t h = 3 * t; h < 3 * t + 3; h++) {
-                if (mesh->triangles[h] < least) least = mesh->triangles[h];
-                if (mesh->twin[h] < 0 || seen[mesh->twin[h] / 3]) continue;
+                if (mesh->triangles[h] < least)
+                    least = mesh->triangles[h];
+                if (mesh->twin[h] < 0 || seen[mesh->twin[h] / 3])
+                    continue;
                 seen[mesh->twin[h] / 3] = true;
                 stack[height++] = mesh->twin[h] / 3;
             }
@@ -243,12 +248,12 @@ done:
 
 /* A vertex on the boundary is left by one boundary half-edge, its vertex_halfedge. `seen` [n_vertices] is
  * overwritten. */
-static int32_t count_boundary_loops(const orb_mesh *mesh, int32_t *seen)
-{
+static int32_t count_boundary_loops(const orb_mesh *mesh, int32_t *seen) {
     int32_t loops = 0;
     memset(seen, 0, (size_t)mesh->n_vertices * sizeof *seen);
     for (int32_t h = 0; h < 3 * mesh->n_triangles; h++) {
-        if (mesh->twin[h] >= 0 || seen[halfedge_from(mesh, h)]) continue;
+        if (mesh->twin[h] >= 0 || seen[halfedge_from(mesh, h)])
+            continue;
         loops++;
         for (int32_t g = h; !seen[halfedge_from(mesh, g)]; g = mesh->vertex_halfedge[halfedge_to(mesh, g)])
             seen[halfedge_from(mesh, g)] = 1;
@@ -256,11 +261,11 @@ static int32_t count_boundary_loops(const orb_mesh *mesh, int32_t *seen)
     return loops;
 }
 
-static orb_status count_topology(orb_mesh *mesh, const workspace *work, orb_error *error)
-{
+static orb_status count_topology(orb_mesh *mesh, const workspace *work, orb_error *error) {
     orb_found components = {0};
     const orb_status status = find_components(mesh, &components, error);
-    if (status != ORB_OK) return status;
+    if (status != ORB_OK)
+        return status;
     mesh->n_components = (int32_t)components.found;
     mesh->n_boundary_loops = count_boundary_loops(mesh, work->spare);
     mesh->euler = mesh->n_used_vertices - mesh->n_edges + mesh->n_triangles;
@@ -270,8 +275,7 @@ static orb_status count_topology(orb_mesh *mesh, const workspace *work, orb_erro
 
 /* --- the module's functions ----------------------------------------------------------------------------------- */
 
-static orb_status copy_arrays(const orb_mesh_arrays *arrays, orb_mesh *mesh, orb_error *error)
-{
+static orb_status copy_arrays(const orb_mesh_arrays *arrays, orb_mesh *mesh, orb_error *error) {
     const size_t n = (size_t)arrays->n_vertices, m3 = 3 * (size_t)arrays->n_triangles;
     mesh->n_vertices = arrays->n_vertices;
     mesh->n_triangles = arrays->n_triangles;
@@ -287,13 +291,13 @@ static orb_status copy_arrays(const orb_mesh_arrays *arrays, orb_mesh *mesh, orb
     return ORB_OK;
 }
 
-orb_status mesh_create(const orb_mesh_arrays *arrays, orb_mesh **mesh, orb_error *error)
-{
+orb_status mesh_create(const orb_mesh_arrays *arrays, orb_mesh **mesh, orb_error *error) {
     workspace work = {0};
     orb_mesh *made = NULL;
     *mesh = NULL;
     orb_status status = mesh_check_arrays(arrays, error);
-    if (status != ORB_OK) return status;
+    if (status != ORB_OK)
+        return status;
 
     made = calloc(1, sizeof *made);
     const size_t n = (size_t)arrays->n_vertices, m3 = 3 * (size_t)arrays->n_triangles;
@@ -304,12 +308,17 @@ orb_status mesh_create(const orb_mesh_arrays *arrays, orb_mesh **mesh, orb_error
         status = error_memory(error);
         goto done;
     }
-    if ((status = copy_arrays(arrays, made, error)) != ORB_OK) goto done;
+    if ((status = copy_arrays(arrays, made, error)) != ORB_OK)
+        goto done;
     sort_halfedges(made, &work);
-    if ((status = check_edges(made, &work, error)) != ORB_OK) goto done;
-    if ((status = link_halfedges(made, &work, error)) != ORB_OK) goto done;
-    if ((status = link_vertices(made, work.spare, error)) != ORB_OK) goto done;
-    if ((status = count_topology(made, &work, error)) != ORB_OK) goto done;
+    if ((status = check_edges(made, &work, error)) != ORB_OK)
+        goto done;
+    if ((status = link_halfedges(made, &work, error)) != ORB_OK)
+        goto done;
+    if ((status = link_vertices(made, work.spare, error)) != ORB_OK)
+        goto done;
+    if ((status = count_topology(made, &work, error)) != ORB_OK)
+        goto done;
     *mesh = made;
     made = NULL;
 done:
@@ -320,9 +329,9 @@ done:
     return status;
 }
 
-void mesh_free(orb_mesh *mesh)
-{
-    if (!mesh) return;
+void mesh_free(orb_mesh *mesh) {
+    if (!mesh)
+        return;
     free(mesh->vertices);
     free(mesh->triangles);
     free(mesh->twin);
@@ -332,12 +341,12 @@ void mesh_free(orb_mesh *mesh)
     free(mesh);
 }
 
-orb_status mesh_require_sphere(const orb_mesh *mesh, orb_error *error)
-{
+orb_status mesh_require_sphere(const orb_mesh *mesh, orb_error *error) {
     if (mesh->n_components != 1) {
         orb_found lowest = {0};
         const orb_status status = find_components(mesh, &lowest, error);
-        if (status != ORB_OK) return status;
+        if (status != ORB_OK)
+            return status;
         return error_set_elements(error, ORB_SEVERAL_COMPONENTS, ORB_VERTEX, lowest.elements, lowest.entries,
                                   lowest.found,
                                   "the mesh has %d separate parts, for example those of vertices %d and %d: separate "
@@ -348,7 +357,8 @@ orb_status mesh_require_sphere(const orb_mesh *mesh, orb_error *error)
         orb_found open = {0};
         for (int32_t e = 0; e < mesh->n_edges; e++) {
             const int32_t h = mesh->edge_halfedge[e];
-            if (mesh->twin[h] < 0) found_add_edge(&open, halfedge_from(mesh, h), halfedge_to(mesh, h));
+            if (mesh->twin[h] < 0)
+                found_add_edge(&open, halfedge_from(mesh, h), halfedge_to(mesh, h));
         }
         return error_set_elements(error, ORB_BOUNDARY, ORB_EDGE, open.elements, open.entries, open.found,
                                   "the mesh is open: %d %s with %lld edges in all, first %d-%d: close them "
@@ -366,21 +376,18 @@ orb_status mesh_require_sphere(const orb_mesh *mesh, orb_error *error)
 }
 
 /* Length of a vector; hypot only where the squares leave the range of doubles. */
-static double length3(double x, double y, double z)
-{
+static double length3(double x, double y, double z) {
     const double squares = x * x + y * y + z * z;
     return squares > 1e-280 && squares < 1e300 ? sqrt(squares) : hypot(hypot(x, y), z);
 }
 
-double mesh_edge_length(const orb_mesh *mesh, int32_t halfedge)
-{
+double mesh_edge_length(const orb_mesh *mesh, int32_t halfedge) {
     const double *p = mesh->vertices + 3 * (size_t)halfedge_from(mesh, halfedge);
     const double *q = mesh->vertices + 3 * (size_t)halfedge_to(mesh, halfedge);
     return length3(q[0] - p[0], q[1] - p[1], q[2] - p[2]);
 }
 
-double mesh_triangle_area(const orb_mesh *mesh, int32_t triangle)
-{
+double mesh_triangle_area(const orb_mesh *mesh, int32_t triangle) {
     const int32_t *corner = mesh->triangles + 3 * (size_t)triangle;
     const double *p = mesh->vertices + 3 * (size_t)corner[0];
     const double *q = mesh->vertices + 3 * (size_t)corner[1];

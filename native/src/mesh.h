@@ -9,19 +9,19 @@
 
 typedef struct orb_mesh {
     int32_t n_vertices, n_triangles, n_edges;
-    double *vertices;          /* [n_vertices*3] a copy of the input */
-    int32_t *triangles;        /* [n_triangles*3] a copy of the input */
-    int32_t *twin;             /* [n_triangles*3] the opposite half-edge; -1 on the boundary */
-    int32_t *edge;             /* [n_triangles*3] the edge that a half-edge lies on */
-    int32_t *edge_halfedge;    /* [n_edges] one half-edge of each edge; edges are numbered in the order of their lower
+    double *vertices;         /* [n_vertices*3] a copy of the input */
+    int32_t *triangles;       /* [n_triangles*3] a copy of the input */
+    int32_t *twin;            /* [n_triangles*3] the opposite half-edge; -1 on the boundary */
+    int32_t *edge;            /* [n_triangles*3] the edge that a half-edge lies on */
+    int32_t *edge_halfedge;   /* [n_edges] one half-edge of each edge; edges are numbered in the order of their lower
                                   vertex, then their higher vertex */
-    int32_t *vertex_halfedge;  /* [n_vertices] a half-edge leaving the vertex (on a boundary: the one from which
+    int32_t *vertex_halfedge; /* [n_vertices] a half-edge leaving the vertex (on a boundary: the one from which
                                   turning counter-clockwise meets the whole fan); -1 if isolated */
-    int32_t n_used_vertices;   /* vertices that are not isolated */
-    int32_t n_components;      /* of triangles joined by edges; isolated vertices do not count */
+    int32_t n_used_vertices;  /* vertices that are not isolated */
+    int32_t n_components;     /* of triangles joined by edges; isolated vertices do not count */
     int32_t n_boundary_loops;
-    int32_t euler;             /* used vertices - edges + triangles */
-    int32_t genus;             /* handles of the surface with its boundary loops closed, over all components */
+    int32_t euler; /* used vertices - edges + triangles */
+    int32_t genus; /* handles of the surface with its boundary loops closed, over all components */
 } orb_mesh;
 
 static inline int32_t halfedge_next(int32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }

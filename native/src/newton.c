@@ -26,8 +26,8 @@ typedef struct minimiser {
     orb_point *placed;           /* [n_copies] */
     double complex *turn;        /* [n_copies] */
     double complex *gradient, *old_gradient, *step, *transport; /* [n_vertices] */
-    double *scale;               /* [n_vertices] */
-    double *rows;                /* right-hand side and solution */
+    double *scale;                                              /* [n_vertices] */
+    double *rows;                                               /* right-hand side and solution */
     double energy, relative;
 } minimiser;
 
@@ -90,8 +90,8 @@ static orb_status analyze(minimiser *work, const int32_t *order, orb_error *erro
 static void evaluate(minimiser *work) {
     double start = monitor_clock();
     problem_place(work->problem, work->position, work->placed, work->turn);
-    work->energy = problem_energy(work->problem, work->placed, work->turn, work->position, work->gradient,
-                                  work->scale, &work->relative);
+    work->energy = problem_energy(work->problem, work->placed, work->turn, work->position, work->gradient, work->scale,
+                                  &work->relative);
     work->minimum->seconds_assemble += monitor_clock() - start;
 }
 
@@ -109,8 +109,7 @@ static orb_status factor(minimiser *work, orb_error *error) {
     bool positive = false;
     for (int hessian = HESSIAN_EXACT; hessian <= HESSIAN_POSITIVE && !positive; hessian++) {
         double start = monitor_clock();
-        system_assemble(work->system, work->problem, work->position, work->placed, work->turn,
-                        (orb_hessian)hessian);
+        system_assemble(work->system, work->problem, work->position, work->placed, work->turn, (orb_hessian)hessian);
         double assembled = monitor_clock();
         orb_status status = cholesky_factor(work->cholesky, work->system->values, &positive, error);
         if (status != ORB_OK)
@@ -237,8 +236,8 @@ static orb_status iterate(minimiser *work, orb_monitor *monitor, orb_error *erro
     bool renew = true;
     double first = work->relative, best = work->relative;
     int stalls = 0, fruitless = 0; /* steps, and refinements, since the gradient last halved */
-    while (work->relative > gradient_goal && work->minimum->iterations < MOST_STEPS &&
-           stalls <= MOST_STALLS && fruitless <= MOST_FRUITLESS) {
+    while (work->relative > gradient_goal && work->minimum->iterations < MOST_STEPS && stalls <= MOST_STALLS &&
+           fruitless <= MOST_FRUITLESS) {
         double done = log(first / work->relative) / log(first / gradient_goal);
         orb_status status = monitor_report(monitor, "minimise", 0.3 + 0.6 * fmax(0, fmin(1, done)), error);
         if (status == ORB_OK && renew)

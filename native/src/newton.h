@@ -12,8 +12,8 @@
 #include "system.h"
 
 typedef struct orb_minimum {
-    int32_t iterations;     /* steps that lowered the energy by more than its rounding */
-    int32_t refinements;    /* steps after those, for the last digits of the gradient */
+    int32_t iterations;  /* steps that lowered the energy by more than its rounding */
+    int32_t refinements; /* steps after those, for the last digits of the gradient */
     int32_t factorisations;
     double energy, relative_gradient;
     int64_t factor_nonzeros;

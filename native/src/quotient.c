@@ -130,8 +130,9 @@ orb_status quotient_create(const orb_tile *tile, orb_quotient **result, orb_erro
     for (int32_t i = 0; i < tile->n_cones; i++)
         euler -= 1 - 1.0 / tile->orders[i];
     if (tile->n_cones > 3 || !(euler > 0))
-        return error_set(error, ORB_BAD_ARGUMENT, "only a spherical orbifold has the whole sphere as its quotient: "
-                                                  "choose a signature such as 33, 225, 332, 432 or 532");
+        return error_set(error, ORB_BAD_ARGUMENT,
+                         "only a spherical orbifold has the whole sphere as its quotient: "
+                         "choose a signature such as 33, 225, 332, 432 or 532");
     if (tile->n_cones == 3 && llround(2 / euler) > largest_group)
         return error_set(error, ORB_UNSUPPORTED_SIGNATURE,
                          "the group has %.0f elements, too many to divide the whole sphere by: take orders of at most "

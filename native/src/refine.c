@@ -6,8 +6,7 @@
 
 /* Writes the pieces of triangle v with the midpoints m (of v0 v1, v1 v2, v2 v0; -1 where the edge stays), and
  * returns how many. Which diagonal halves a quadrangle concerns this triangle alone. */
-static int32_t split_triangle(const int32_t v[3], const int32_t m[3], int32_t *pieces)
-{
+static int32_t split_triangle(const int32_t v[3], const int32_t m[3], int32_t *pieces) {
     int32_t n_marked = (m[0] >= 0) + (m[1] >= 0) + (m[2] >= 0);
     if (n_marked == 0) {
         memcpy(pieces, v, 3 * sizeof *pieces);
@@ -20,7 +19,8 @@ static int32_t split_triangle(const int32_t v[3], const int32_t m[3], int32_t *p
     }
     /* Turn the triangle so that its odd edge out, the marked or the unmarked one, is first. */
     int32_t odd = 0;
-    while ((m[odd] >= 0) != (n_marked == 1)) odd++;
+    while ((m[odd] >= 0) != (n_marked == 1))
+        odd++;
     int32_t a = v[odd], b = v[(odd + 1) % 3], c = v[(odd + 2) % 3];
     int32_t ab = m[odd], bc = m[(odd + 1) % 3], ca = m[(odd + 2) % 3];
     if (n_marked == 1) {
@@ -35,18 +35,18 @@ static int32_t split_triangle(const int32_t v[3], const int32_t m[3], int32_t *p
 
 /* midpoint[edge]: the new vertex, or -1. Returns the number of vertices in all; it fits, for a mesh has at most
  * INT32_MAX / 3 vertices and INT32_MAX / 2 edges. */
-static int32_t number_midpoints(const orb_mesh *mesh, const uint8_t *marked, int32_t *midpoint)
-{
+static int32_t number_midpoints(const orb_mesh *mesh, const uint8_t *marked, int32_t *midpoint) {
     int32_t n_vertices = mesh->n_vertices;
-    for (int32_t e = 0; e < mesh->n_edges; e++) midpoint[e] = marked[e] ? n_vertices++ : -1;
+    for (int32_t e = 0; e < mesh->n_edges; e++)
+        midpoint[e] = marked[e] ? n_vertices++ : -1;
     return n_vertices;
 }
 
-static void place_midpoints(const orb_mesh *mesh, const int32_t *midpoint, double *vertices)
-{
+static void place_midpoints(const orb_mesh *mesh, const int32_t *midpoint, double *vertices) {
     memcpy(vertices, mesh->vertices, (size_t)mesh->n_vertices * 3 * sizeof *vertices);
     for (int32_t e = 0; e < mesh->n_edges; e++) {
-        if (midpoint[e] < 0) continue;
+        if (midpoint[e] < 0)
+            continue;
         const double *a = mesh->vertices + 3 * (size_t)halfedge_from(mesh, mesh->edge_halfedge[e]);
         const double *b = mesh->vertices + 3 * (size_t)halfedge_to(mesh, mesh->edge_halfedge[e]);
         for (int i = 0; i < 3; i++) /* each halved first: the sum of two finite numbers need not be finite */
@@ -55,8 +55,7 @@ static void place_midpoints(const orb_mesh *mesh, const int32_t *midpoint, doubl
 }
 
 orb_status refine_edges(const orb_mesh *mesh, const uint8_t *marked, orb_mesh **refined, int32_t **parent,
-                        orb_error *error)
-{
+                        orb_error *error) {
     orb_status status = ORB_OK;
     double *vertices = NULL;
     int32_t *triangles = NULL, *from = NULL;
@@ -70,13 +69,13 @@ orb_status refine_edges(const orb_mesh *mesh, const uint8_t *marked, orb_mesh **
     }
     int32_t n_vertices = number_midpoints(mesh, marked, midpoint);
     int64_t n_triangles = mesh->n_triangles;
-    for (int32_t h = 0; h < 3 * mesh->n_triangles; h++) n_triangles += midpoint[mesh->edge[h]] >= 0;
+    for (int32_t h = 0; h < 3 * mesh->n_triangles; h++)
+        n_triangles += midpoint[mesh->edge[h]] >= 0;
     if (n_vertices > INT32_MAX / 3 || n_triangles > INT32_MAX / 3) {
-        status = error_set(
-            error, ORB_BAD_ARGUMENT,
-            "the cut has no room between these cones, and the mesh is too large to be refined round "
-            "it (%d vertices, %lld triangles): use fewer cones",
-            (int)n_vertices, (long long)n_triangles);
+        status = error_set(error, ORB_BAD_ARGUMENT,
+                           "the cut has no room between these cones, and the mesh is too large to be refined round "
+                           "it (%d vertices, %lld triangles): use fewer cones",
+                           (int)n_vertices, (long long)n_triangles);
         goto done;
     }
     vertices = malloc((size_t)n_vertices * 3 * sizeof *vertices + 1);
@@ -92,7 +91,8 @@ orb_status refine_edges(const orb_mesh *mesh, const uint8_t *marked, orb_mesh **
         const int32_t *edge = mesh->edge + 3 * (size_t)t;
         const int32_t m[3] = {midpoint[edge[0]], midpoint[edge[1]], midpoint[edge[2]]};
         int32_t n = split_triangle(mesh->triangles + 3 * (size_t)t, m, triangles + 3 * (size_t)n_pieces);
-        for (int32_t i = 0; i < n; i++) from[n_pieces++] = t;
+        for (int32_t i = 0; i < n; i++)
+            from[n_pieces++] = t;
     }
     orb_mesh_arrays arrays = {n_vertices, vertices, (int32_t)n_triangles, triangles};
     status = mesh_create(&arrays, refined, error);
@@ -130,8 +130,7 @@ done:
  * triangle abc of the input and joins two midpoints, or one midpoint, say of bc, to a. Two midpoints of a triangle
  * are adjacent wherever both are there. From bc's midpoint to a there is an edge if no other edge of abc is halved;
  * and none is, as its midpoint would be adjacent to both a and bc's midpoint: a chord of S one way or the other. */
-void refine_mark(const orb_mesh *mesh, const int32_t *place, uint8_t *marked)
-{
+void refine_mark(const orb_mesh *mesh, const int32_t *place, uint8_t *marked) {
     for (int32_t e = 0; e < mesh->n_edges; e++) {
         int32_t a = place[halfedge_from(mesh, mesh->edge_halfedge[e])];
         int32_t b = place[halfedge_to(mesh, mesh->edge_halfedge[e])];

@@ -23,7 +23,6 @@ orb_status refine_edges(const orb_mesh *mesh, const uint8_t *marked /* [n_edges]
  * cone and are not edges of the path. With all of them halved, a path from the last vertex to any cone that is not
  * reached yet, free but for its ends, exists on every sphere-like mesh; and the midpoints that it visits suffice
  * (both proved in refine.c). */
-void refine_mark(const orb_mesh *mesh, const int32_t *place /* [n_vertices] */,
-                 uint8_t *marked /* [n_edges] */);
+void refine_mark(const orb_mesh *mesh, const int32_t *place /* [n_vertices] */, uint8_t *marked /* [n_edges] */);
 
 #endif

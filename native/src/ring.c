@@ -195,4 +195,3 @@ bool ring_centre(orb_ring *ring, double *positions, int32_t vertex) {
     memcpy(x, to, sizeof to);
     return true;
 }
-

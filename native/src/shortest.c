@@ -7,35 +7,30 @@
 #include <math.h>
 #include <stdlib.h>
 
-void shortest_clear(shortest_search *search)
-{
+void shortest_clear(shortest_search *search) {
     free(search->nodes);
     free(search->heap);
     *search = (shortest_search){0};
 }
 
-bool shortest_allocate(shortest_search *search, int32_t capacity)
-{
+bool shortest_allocate(shortest_search *search, int32_t capacity) {
     shortest_clear(search);
     search->nodes = calloc((size_t)capacity, sizeof *search->nodes);
     search->heap = malloc((size_t)capacity * sizeof *search->heap);
     return search->nodes && search->heap;
 }
 
-static bool entry_before(shortest_entry a, shortest_entry b)
-{
+static bool entry_before(shortest_entry a, shortest_entry b) {
     return a.key < b.key || (a.key == b.key && a.vertex < b.vertex);
 }
 
-static void heap_put(shortest_search *search, int32_t slot, shortest_entry entry)
-{
+static void heap_put(shortest_search *search, int32_t slot, shortest_entry entry) {
     search->heap[slot] = entry;
     search->nodes[entry.vertex].slot = slot;
 }
 
 /* Puts the entry into the free slot or above it. */
-static void heap_raise(shortest_search *search, int32_t slot, shortest_entry entry)
-{
+static void heap_raise(shortest_search *search, int32_t slot, shortest_entry entry) {
     while (slot > 0 && entry_before(entry, search->heap[(slot - 1) / 2])) {
         heap_put(search, slot, search->heap[(slot - 1) / 2]);
         slot = (slot - 1) / 2;
@@ -43,25 +38,25 @@ static void heap_raise(shortest_search *search, int32_t slot, shortest_entry ent
     heap_put(search, slot, entry);
 }
 
-static int32_t heap_take(shortest_search *search)
-{
+static int32_t heap_take(shortest_search *search) {
     int32_t first = search->heap[0].vertex, n = --search->n_heap, slot = 0;
     shortest_entry entry = search->heap[n];
-    for (int32_t child = 1; child < n;
-         child = 2 * slot + 1) { /* no overflow: a mesh has at most 2^31 / 3 vertices */
-        if (child + 1 < n && entry_before(search->heap[child + 1], search->heap[child])) child++;
-        if (!entry_before(search->heap[child], entry)) break;
+    for (int32_t child = 1; child < n; child = 2 * slot + 1) { /* no overflow: a mesh has at most 2^31 / 3 vertices */
+        if (child + 1 < n && entry_before(search->heap[child + 1], search->heap[child]))
+            child++;
+        if (!entry_before(search->heap[child], entry))
+            break;
         heap_put(search, slot, search->heap[child]);
         slot = child;
     }
-    if (n > 0) heap_put(search, slot, entry);
+    if (n > 0)
+        heap_put(search, slot, entry);
     search->nodes[first].slot = -1;
     return first;
 }
 
 /* A lower bound of the distance along edges; where the squares overflow, zero is one. */
-static double straight_distance(const orb_mesh *mesh, int32_t a, int32_t b)
-{
+static double straight_distance(const orb_mesh *mesh, int32_t a, int32_t b) {
     const double *p = mesh->vertices + 3 * (size_t)a, *q = mesh->vertices + 3 * (size_t)b;
     double x = q[0] - p[0], y = q[1] - p[1], z = q[2] - p[2];
     double distance = sqrt(x * x + y * y + z * z);
@@ -69,8 +64,7 @@ static double straight_distance(const orb_mesh *mesh, int32_t a, int32_t b)
 }
 
 static void reach(shortest_search *search, const orb_mesh *mesh, int32_t to, int32_t vertex, int32_t previous,
-                  double distance)
-{
+                  double distance) {
     shortest_node *node = search->nodes + vertex;
     if (node->round != search->round) {
         node->round = search->round;
@@ -85,19 +79,18 @@ static void reach(shortest_search *search, const orb_mesh *mesh, int32_t to, int
 }
 
 bool shortest_find(shortest_search *search, const orb_mesh *mesh, const int32_t *place, int32_t free_place,
-                   int32_t from, int32_t to)
-{
+                   int32_t from, int32_t to) {
     search->round++;
     search->n_heap = 0;
     reach(search, mesh, to, from, -1, 0.0);
     while (search->n_heap > 0) {
         int32_t vertex = heap_take(search), start = mesh->vertex_halfedge[vertex], h = start;
-        if (vertex == to) return true;
+        if (vertex == to)
+            return true;
         do {
             int32_t next = halfedge_to(mesh, h);
             if (place[next] == free_place || next == to)
-                reach(search, mesh, to, next, vertex,
-                      search->nodes[vertex].distance + mesh_edge_length(mesh, h));
+                reach(search, mesh, to, next, vertex, search->nodes[vertex].distance + mesh_edge_length(mesh, h));
             h = mesh->twin[halfedge_previous(h)];
         } while (h != start);
     }

@@ -9,8 +9,8 @@ typedef struct shortest_node {
     double distance;  /* from the start, in this round */
     double remaining; /* at least so far from the end */
     int32_t previous; /* the vertex before it */
-    int32_t round; /* the search that last reached it; all else here is stale unless it is the present one */
-    int32_t slot;  /* where it is in the heap; -1 once it is settled */
+    int32_t round;    /* the search that last reached it; all else here is stale unless it is the present one */
+    int32_t slot;     /* where it is in the heap; -1 once it is settled */
 } shortest_node;
 
 typedef struct shortest_entry {

@@ -27,15 +27,16 @@ static orb_status read_order(const char *text, size_t *position, int32_t *order,
         at++;
     }
     if (at == first)
-        return bad_character(error, at, grouped ? "an order is missing after the parenthesis"
-                                                : "expected a digit, an order in parentheses, *, x or o");
+        return bad_character(error, at,
+                             grouped ? "an order is missing after the parenthesis"
+                                     : "expected a digit, an order in parentheses, *, x or o");
     if (grouped && text[at++] != ')')
         return bad_character(error, at - 1, "a closing parenthesis is missing");
     if (value < 2) {
         int32_t element = (int32_t)first;
         return error_set_elements(error, ORB_BAD_ORDER, ORB_CHARACTER, &element, 1, 1,
-                                  "order %ld at character %zu of the signature is below 2: leave that cone out",
-                                  value, first + 1);
+                                  "order %ld at character %zu of the signature is below 2: leave that cone out", value,
+                                  first + 1);
     }
     *order = (int32_t)value;
     *position = at;
@@ -88,8 +89,7 @@ static bool fraction_add(fraction *f, int64_t p, int64_t q) {
     wide_integer shared = common_divisor(f->denominator, q), n, d, m;
     if (__builtin_mul_overflow(f->denominator, (wide_integer)q / shared, &d) ||
         __builtin_mul_overflow(f->numerator, (wide_integer)q / shared, &n) ||
-        __builtin_mul_overflow((wide_integer)p, f->denominator / shared, &m) ||
-        __builtin_add_overflow(n, m, &n))
+        __builtin_mul_overflow((wide_integer)p, f->denominator / shared, &m) || __builtin_add_overflow(n, m, &n))
         return false;
     shared = common_divisor(n, d);
     f->numerator = n / shared;
@@ -118,16 +118,17 @@ static orb_status refuse_bad_orbifold(const orb_signature *signature, orb_error 
     const int32_t *n = signature->orders;
     bool only_cones = signature_is_supported(signature) || (!signature->n_mirrors && !signature->n_crosscaps &&
                                                             !signature->n_handles && signature->n_cones < 2);
-    bool only_mirror = signature->n_mirrors == 1 && !signature->n_crosscaps && !signature->n_handles &&
-                       !signature->n_cones;
+    bool only_mirror =
+        signature->n_mirrors == 1 && !signature->n_crosscaps && !signature->n_handles && !signature->n_cones;
     int32_t count = only_mirror ? signature->n_corners : signature->n_cones;
     if ((!only_cones && !only_mirror) || count > 2 || count == 0)
         return ORB_OK;
     const char *left = n[0] < 10 ? "" : "(", *right = n[0] < 10 ? "" : ")";
     if (count == 1)
-        return error_set(error, ORB_BAD_ORBIFOLD,
-                         "%s is not a good orbifold: a single cone or corner has no tiling; take %s%d%s%s%d%s or three cones",
-                         signature->text, left, (int)n[0], right, left, (int)n[0], right);
+        return error_set(
+            error, ORB_BAD_ORBIFOLD,
+            "%s is not a good orbifold: a single cone or corner has no tiling; take %s%d%s%s%d%s or three cones",
+            signature->text, left, (int)n[0], right, left, (int)n[0], right);
     if (n[0] != n[1])
         return error_set(error, ORB_BAD_ORBIFOLD,
                          "%s is not a good orbifold: two cones or corners need equal orders, as in %s%d%s%s%d%s",
@@ -143,8 +144,8 @@ static void write_text(orb_signature *signature, size_t room) {
         for (int32_t m = 0; i == signature->n_cones && m < signature->n_mirrors; m++)
             *out++ = '*';
         if (i < total)
-            out += snprintf(out, (size_t)(end - out), signature->orders[i] > 9 ? "(%d)" : "%d",
-                            (int)signature->orders[i]);
+            out +=
+                snprintf(out, (size_t)(end - out), signature->orders[i] > 9 ? "(%d)" : "%d", (int)signature->orders[i]);
     }
     for (int32_t i = 0; i < signature->n_crosscaps; i++)
         *out++ = 'x';

@@ -11,7 +11,7 @@ typedef struct orb_signature {
     int32_t *orders;   /* [n_cones + n_corners] */
     int32_t curvature; /* sign of the Euler characteristic, from exact integers */
     double euler;
-    char *text;        /* normalised: "442", "22(12)" */
+    char *text; /* normalised: "442", "22(12)" */
 } orb_signature;
 
 /* Errors: ORB_BAD_SIGNATURE with the position, ORB_BAD_ORDER, ORB_BAD_ORBIFOLD (MN with M != N, or one cone). */

@@ -39,8 +39,7 @@ static orb_status build_blocks(const orb_problem *problem, orb_system *system, o
     }
     for (size_t k = 0; k < 2 * edges; k++)
         ends[k] = system->free_index[problem->copies->vertex[problem->edges[k]]];
-    orb_status status =
-        pattern_of_pairs(system->n_free, problem->n_edges, ends, &system->blocks, system->slot, error);
+    orb_status status = pattern_of_pairs(system->n_free, problem->n_edges, ends, &system->blocks, system->slot, error);
     free(ends);
     return status;
 }
@@ -167,8 +166,8 @@ static void basis_of(const orb_system *system, const orb_problem *problem, const
     basis[1] = CMPLX(0, 1);
 }
 
-void system_assemble(orb_system *system, const orb_problem *problem, const orb_point *position,
-                     const orb_point *placed, const double complex *turn, orb_hessian hessian) {
+void system_assemble(orb_system *system, const orb_problem *problem, const orb_point *position, const orb_point *placed,
+                     const double complex *turn, orb_hessian hessian) {
     size_t entries = (size_t)system->blocks.column[system->n_free];
     memset(system->alpha, 0, entries * sizeof *system->alpha);
     if (!system->is_complex)
@@ -212,8 +211,8 @@ void system_gather(const orb_system *system, const orb_problem *problem, const o
     }
 }
 
-void system_scatter(const orb_system *system, const orb_problem *problem, const orb_point *position,
-                    const double *rows, double complex *vectors) {
+void system_scatter(const orb_system *system, const orb_problem *problem, const orb_point *position, const double *rows,
+                    double complex *vectors) {
     memset(vectors, 0, (size_t)problem->n_vertices * sizeof *vectors);
     for (int32_t j = 0; j < system->n_free; j++) {
         double complex basis[2], y = 0;

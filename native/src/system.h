@@ -19,16 +19,16 @@ typedef enum orb_hessian {
 
 typedef struct orb_system {
     bool is_complex;
-    int32_t n_free;          /* vertices that move */
-    int32_t *free_vertex;    /* [n_free] */
-    int32_t *free_index;     /* [n_vertices] -1 where fixed */
-    orb_pattern blocks;      /* between moving vertices */
-    int64_t *slot;           /* [n_edges] entry of `blocks` for the edge's mixed block; -1 if an end is fixed */
-    int32_t *unknown;        /* [n_free+1] first row of each vertex; for complex systems the index itself */
-    int64_t *first;          /* real: [2*entries] where in `values` each block's first and second column begin */
-    orb_pattern pattern;     /* of the matrix itself; for complex systems that of the blocks (shared) */
+    int32_t n_free;               /* vertices that move */
+    int32_t *free_vertex;         /* [n_free] */
+    int32_t *free_index;          /* [n_vertices] -1 where fixed */
+    orb_pattern blocks;           /* between moving vertices */
+    int64_t *slot;                /* [n_edges] entry of `blocks` for the edge's mixed block; -1 if an end is fixed */
+    int32_t *unknown;             /* [n_free+1] first row of each vertex; for complex systems the index itself */
+    int64_t *first;               /* real: [2*entries] where in `values` each block's first and second column begin */
+    orb_pattern pattern;          /* of the matrix itself; for complex systems that of the blocks (shared) */
     double complex *alpha, *beta; /* [entries of blocks] */
-    double *values;          /* what cholesky_factor wants */
+    double *values;               /* what cholesky_factor wants */
 } orb_system;
 
 orb_status system_create(const orb_problem *problem, bool is_complex, orb_system **system, orb_error *error);
@@ -37,13 +37,13 @@ void system_free(orb_system *system);
 /* An ordering of the blocks spread over the rows: rows[unknown[n_free]]. */
 void system_spread_order(const orb_system *system, const int32_t *order, int32_t *rows);
 
-void system_assemble(orb_system *system, const orb_problem *problem, const orb_point *position,
-                     const orb_point *placed, const double complex *turn, orb_hessian hessian);
+void system_assemble(orb_system *system, const orb_problem *problem, const orb_point *position, const orb_point *placed,
+                     const double complex *turn, orb_hessian hessian);
 
 /* Between complex numbers per vertex (n_vertices) and the rows of the system. */
 void system_gather(const orb_system *system, const orb_problem *problem, const orb_point *position,
                    const double complex *vectors, double *rows);
-void system_scatter(const orb_system *system, const orb_problem *problem, const orb_point *position,
-                    const double *rows, double complex *vectors);
+void system_scatter(const orb_system *system, const orb_problem *problem, const orb_point *position, const double *rows,
+                    double complex *vectors);
 
 #endif

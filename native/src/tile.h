@@ -11,13 +11,13 @@
 typedef struct orb_tile {
     const orb_geometry *geometry;
     int32_t n_cones;
-    int32_t *orders;       /* [n_cones] */
-    orb_point *corners;    /* [2*n_cones - 2] counter-clockwise, as above */
-    int32_t n_pairings;    /* n_cones: the identity and one for each segment */
-    orb_isometry *pairings;/* [n_pairings] */
-    double complex *sides; /* [n_cones-1] the vector along the side c_s c_(s+1) of the left bank, at c_s */
-    bool rotates;          /* a free rotation about c_1 (two cones) */
-    bool deforms;          /* the tile has an affine modulus, found after the solve (2222) */
+    int32_t *orders;        /* [n_cones] */
+    orb_point *corners;     /* [2*n_cones - 2] counter-clockwise, as above */
+    int32_t n_pairings;     /* n_cones: the identity and one for each segment */
+    orb_isometry *pairings; /* [n_pairings] */
+    double complex *sides;  /* [n_cones-1] the vector along the side c_s c_(s+1) of the left bank, at c_s */
+    bool rotates;           /* a free rotation about c_1 (two cones) */
+    bool deforms;           /* the tile has an affine modulus, found after the solve (2222) */
 } orb_tile;
 
 orb_status tile_create(int curvature, int32_t n_cones, const int32_t *orders, orb_tile **tile, orb_error *error);

@@ -6,8 +6,7 @@
 
 #include "vector3.h"
 
-triangle_shape triangle_measure(const orb_mesh *mesh, int32_t triangle)
-{
+triangle_shape triangle_measure(const orb_mesh *mesh, int32_t triangle) {
     triangle_shape shape = {0};
     double largest = 0;
     for (int c = 0; c < 3; c++) {
@@ -18,15 +17,18 @@ triangle_shape triangle_measure(const orb_mesh *mesh, int32_t triangle)
             largest = fmax(largest, fabs(shape.edge[c][k]));
         }
     }
-    if (largest == 0) return shape;
+    if (largest == 0)
+        return shape;
     const int exponent = ilogb(largest);
     const double factor = ldexp(1, exponent > -1000 ? -exponent : 1000); /* 2^1074 would not be a double */
     shape.scale = 0.5 * factor;
     int longest = 0;
     for (int c = 0; c < 3; c++) {
-        for (int k = 0; k < 3; k++) shape.edge[c][k] *= factor;
+        for (int k = 0; k < 3; k++)
+            shape.edge[c][k] *= factor;
         shape.length[c] = vector_length(shape.edge[c]);
-        if (shape.length[c] > shape.length[longest]) longest = c;
+        if (shape.length[c] > shape.length[longest])
+            longest = c;
     }
     /* Of the three cross products that of the two shorter edges has the least rounding error. */
     const double *u = shape.edge[(longest + 1) % 3], *v = shape.edge[(longest + 2) % 3];

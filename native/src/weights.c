@@ -11,9 +11,9 @@
 #include "vector3.h"
 
 /* cot[c]: cotangent of the angle that lies opposite half-edge c. False, with cot unset, if the area is zero. */
-static bool triangle_cotangents(const triangle_shape *shape, double cot[3])
-{
-    if (shape->double_area == 0) return false;
+static bool triangle_cotangents(const triangle_shape *shape, double cot[3]) {
+    if (shape->double_area == 0)
+        return false;
     for (int c = 0; c < 3; c++)
         cot[c] = -vector_dot(shape->edge[(c + 1) % 3], shape->edge[(c + 2) % 3]) / shape->double_area;
     return true;
@@ -22,8 +22,7 @@ static bool triangle_cotangents(const triangle_shape *shape, double cot[3])
 /* part[c]: what the triangle adds to the mean-value weights of half-edge c, both directions added up:
  * (tan(half of the angle at one end) + tan(half of that at the other)) / length. Infinite or NaN where an angle is pi
  * or a length is zero. */
-static void triangle_mean_values(const triangle_shape *shape, double part[3])
-{
+static void triangle_mean_values(const triangle_shape *shape, double part[3]) {
     double tangent[3]; /* of half the angle at corner c */
     for (int c = 0; c < 3; c++) {
         const double lengths = shape->length[c] * shape->length[(c + 2) % 3];
@@ -36,8 +35,7 @@ static void triangle_mean_values(const triangle_shape *shape, double part[3])
 
 /* An error that names the triangles of zero area, or of nearly none, on the edges whose weight is not positive and
  * finite. */
-static orb_status blame_triangles(const orb_mesh *mesh, const double *weights, orb_error *error)
-{
+static orb_status blame_triangles(const orb_mesh *mesh, const double *weights, orb_error *error) {
     orb_found flat = {0}, beside = {0};
     for (int32_t t = 0; t < mesh->n_triangles; t++) {
         bool bad = false;
@@ -45,30 +43,32 @@ static orb_status blame_triangles(const orb_mesh *mesh, const double *weights, o
             const double weight = weights[mesh->edge[h]];
             bad = bad || !(weight > 0) || !isfinite(weight);
         }
-        if (!bad) continue;
+        if (!bad)
+            continue;
         found_add(&beside, t);
-        if (triangle_measure(mesh, t).double_area == 0) found_add(&flat, t);
+        if (triangle_measure(mesh, t).double_area == 0)
+            found_add(&flat, t);
     }
     const orb_found *found = flat.found > 0 ? &flat : &beside;
-    return error_set_elements(error, ORB_ZERO_AREA_TRIANGLE, ORB_TRIANGLE, found->elements, found->entries,
-                              found->found,
-                              "%lld %s no area, first %d, so that weights are not positive and finite: merge their "
-                              "vertices by distance, dissolve them (Mesh > Clean Up > Degenerate Dissolve), or use "
-                              "other weights",
-                              (long long)found->found, found->found == 1 ? "triangle has" : "triangles have",
-                              (int)found->elements[0]);
+    return error_set_elements(
+        error, ORB_ZERO_AREA_TRIANGLE, ORB_TRIANGLE, found->elements, found->entries, found->found,
+        "%lld %s no area, first %d, so that weights are not positive and finite: merge their "
+        "vertices by distance, dissolve them (Mesh > Clean Up > Degenerate Dissolve), or use "
+        "other weights",
+        (long long)found->found, found->found == 1 ? "triangle has" : "triangles have", (int)found->elements[0]);
 }
 
 static orb_status cotangent_weights(const orb_mesh *mesh, double clamp, double *weights, int64_t *n_clamped,
-                                    orb_error *error)
-{
+                                    orb_error *error) {
     if (!(clamp > 0) || !isfinite(clamp))
         return error_set(error, ORB_BAD_ARGUMENT,
                          "the least cotangent weight is %g: make it positive and finite, such as 0.01", clamp);
     /* Edges of zero-area triangles: known so that none is counted twice. */
     bool *raised = calloc((size_t)mesh->n_edges, sizeof *raised);
-    if (!raised) return error_memory(error);
-    for (int32_t e = 0; e < mesh->n_edges; e++) weights[e] = 0;
+    if (!raised)
+        return error_memory(error);
+    for (int32_t e = 0; e < mesh->n_edges; e++)
+        weights[e] = 0;
     for (int32_t t = 0; t < mesh->n_triangles; t++) {
         const triangle_shape shape = triangle_measure(mesh, t);
         double cot[3];
@@ -76,7 +76,8 @@ static orb_status cotangent_weights(const orb_mesh *mesh, double clamp, double *
         for (int32_t c = 0; c < 3; c++) {
             const int32_t e = mesh->edge[3 * t + c];
             weights[e] += has_area ? 0.5 * cot[c] : clamp;
-            if (!has_area) raised[e] = true;
+            if (!has_area)
+                raised[e] = true;
         }
     }
     bool finite = true;
@@ -86,24 +87,28 @@ static orb_status cotangent_weights(const orb_mesh *mesh, double clamp, double *
             continue;
         }
         const bool low = weights[e] < clamp;
-        if (low) weights[e] = clamp;
-        if (low || raised[e]) ++*n_clamped;
+        if (low)
+            weights[e] = clamp;
+        if (low || raised[e])
+            ++*n_clamped;
     }
     free(raised);
     return finite ? ORB_OK : blame_triangles(mesh, weights, error);
 }
 
-static orb_status mean_value_weights(const orb_mesh *mesh, double *weights, orb_error *error)
-{
-    for (int32_t e = 0; e < mesh->n_edges; e++) weights[e] = 0;
+static orb_status mean_value_weights(const orb_mesh *mesh, double *weights, orb_error *error) {
+    for (int32_t e = 0; e < mesh->n_edges; e++)
+        weights[e] = 0;
     for (int32_t t = 0; t < mesh->n_triangles; t++) {
         const triangle_shape shape = triangle_measure(mesh, t);
         double part[3];
         triangle_mean_values(&shape, part);
-        for (int32_t c = 0; c < 3; c++) weights[mesh->edge[3 * t + c]] += 0.5 * part[c];
+        for (int32_t c = 0; c < 3; c++)
+            weights[mesh->edge[3 * t + c]] += 0.5 * part[c];
     }
     for (int32_t e = 0; e < mesh->n_edges; e++)
-        if (!(weights[e] > 0) || !isfinite(weights[e])) return blame_triangles(mesh, weights, error);
+        if (!(weights[e] > 0) || !isfinite(weights[e]))
+            return blame_triangles(mesh, weights, error);
     return ORB_OK;
 }
 
@@ -124,25 +129,26 @@ typedef struct edge_table {
     int32_t *high;  /* [n_edges] the higher vertex, ascending within each of these ranges */
 } edge_table;
 
-static void edge_table_fill(const orb_mesh *mesh, edge_table *table)
-{
+static void edge_table_fill(const orb_mesh *mesh, edge_table *table) {
     int32_t v = 0;
     for (int32_t e = 0; e < mesh->n_edges; e++) {
         const int32_t h = mesh->edge_halfedge[e], a = halfedge_from(mesh, h), b = halfedge_to(mesh, h);
-        while (v <= (a < b ? a : b)) table->first[v++] = e;
+        while (v <= (a < b ? a : b))
+            table->first[v++] = e;
         table->high[e] = a < b ? b : a;
     }
-    while (v <= mesh->n_vertices) table->first[v++] = mesh->n_edges;
+    while (v <= mesh->n_vertices)
+        table->first[v++] = mesh->n_edges;
 }
 
 /* The edge between two vertices, by bisection; -1 if there is none. */
-static int32_t edge_between(const edge_table *table, int32_t a, int32_t b)
-{
+static int32_t edge_between(const edge_table *table, int32_t a, int32_t b) {
     const int32_t low = a < b ? a : b, high = a < b ? b : a;
     int32_t begin = table->first[low], end = table->first[low + 1];
     while (begin < end) {
         const int32_t middle = begin + (end - begin) / 2;
-        if (table->high[middle] == high) return middle;
+        if (table->high[middle] == high)
+            return middle;
         if (table->high[middle] < high)
             begin = middle + 1;
         else
@@ -151,14 +157,12 @@ static int32_t edge_between(const edge_table *table, int32_t a, int32_t b)
     return -1;
 }
 
-static bool is_vertex(const orb_mesh *mesh, double number)
-{
+static bool is_vertex(const orb_mesh *mesh, double number) {
     return number >= 0 && number < mesh->n_vertices && number == floor(number);
 }
 
 static orb_status report_faults(const row_faults *faults, const orb_request *request, const orb_mesh *mesh,
-                                orb_error *error)
-{
+                                orb_error *error) {
     if (faults->no_vertices > 0) {
         const double *row = request->edge_weights + 3 * (size_t)faults->first_row;
         return error_set(error, ORB_BAD_WEIGHT,
@@ -192,10 +196,10 @@ static orb_status report_faults(const row_faults *faults, const orb_request *req
 }
 
 static void read_row(const orb_mesh *mesh, const edge_table *table, const double *row, int32_t row_number,
-                     double *weights, row_faults *faults)
-{
+                     double *weights, row_faults *faults) {
     if (!is_vertex(mesh, row[0]) || !is_vertex(mesh, row[1])) {
-        if (faults->no_vertices++ == 0) faults->first_row = row_number;
+        if (faults->no_vertices++ == 0)
+            faults->first_row = row_number;
         return;
     }
     const int32_t i = (int32_t)row[0], j = (int32_t)row[1], e = edge_between(table, i, j);
@@ -204,15 +208,15 @@ static void read_row(const orb_mesh *mesh, const edge_table *table, const double
     } else if (weights[e] == NOT_GIVEN) {
         const bool good = row[2] > 0 && isfinite(row[2]);
         weights[e] = good ? row[2] : BLAMED;
-        if (!good) found_add_edge(&faults->bad, i, j);
+        if (!good)
+            found_add_edge(&faults->bad, i, j);
     } else if (weights[e] != BLAMED) {
         weights[e] = BLAMED;
         found_add_edge(&faults->twice, i, j);
     }
 }
 
-static orb_status given_weights(const orb_mesh *mesh, const orb_request *request, double *weights, orb_error *error)
-{
+static orb_status given_weights(const orb_mesh *mesh, const orb_request *request, double *weights, orb_error *error) {
     if (request->n_edge_weights < 0 || (request->n_edge_weights > 0 && !request->edge_weights))
         return error_set(error, ORB_BAD_ARGUMENT,
                          "the array of edge weights is a null pointer or its count is negative: give rows i, j, w_ij");
@@ -225,12 +229,14 @@ static orb_status given_weights(const orb_mesh *mesh, const orb_request *request
         goto done;
     }
     edge_table_fill(mesh, &table);
-    for (int32_t e = 0; e < mesh->n_edges; e++) weights[e] = NOT_GIVEN;
+    for (int32_t e = 0; e < mesh->n_edges; e++)
+        weights[e] = NOT_GIVEN;
     for (int32_t r = 0; r < request->n_edge_weights; r++)
         read_row(mesh, &table, request->edge_weights + 3 * (size_t)r, r, weights, &faults);
     for (int32_t e = 0; e < mesh->n_edges; e++) {
         const int32_t h = mesh->edge_halfedge[e];
-        if (weights[e] == NOT_GIVEN) found_add_edge(&faults.missing, halfedge_from(mesh, h), halfedge_to(mesh, h));
+        if (weights[e] == NOT_GIVEN)
+            found_add_edge(&faults.missing, halfedge_from(mesh, h), halfedge_to(mesh, h));
     }
     status = report_faults(&faults, request, mesh, error);
 done:
@@ -240,8 +246,7 @@ done:
 }
 
 orb_status weights_compute(const orb_mesh *mesh, const orb_request *request, double *weights, int64_t *n_clamped,
-                           orb_error *error)
-{
+                           orb_error *error) {
     int64_t counted = 0;
     orb_status status = ORB_OK;
     switch (request->weights) {
@@ -252,7 +257,8 @@ orb_status weights_compute(const orb_mesh *mesh, const orb_request *request, dou
         status = mean_value_weights(mesh, weights, error);
         break;
     case ORB_WEIGHTS_UNIFORM:
-        for (int32_t e = 0; e < mesh->n_edges; e++) weights[e] = 1;
+        for (int32_t e = 0; e < mesh->n_edges; e++)
+            weights[e] = 1;
         break;
     case ORB_WEIGHTS_GIVEN:
         status = given_weights(mesh, request, weights, error);
@@ -262,6 +268,7 @@ orb_status weights_compute(const orb_mesh *mesh, const orb_request *request, dou
                            "the kind of weights is %d: choose cotangent, mean-value, uniform or given",
                            (int)request->weights);
     }
-    if (n_clamped) *n_clamped = counted;
+    if (n_clamped)
+        *n_clamped = counted;
     return status;
 }

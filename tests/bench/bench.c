@@ -142,10 +142,15 @@ static void refine_to(sample_mesh *mesh, int32_t least) {
 }
 
 int main(int argc, char **argv) {
-    static const struct { const char *name; int32_t least, level; } meshes[] = {
+    static const struct {
+        const char *name;
+        int32_t least, level;
+    } meshes[] = {
         {"david.obj", 0, 6}, {"nefertiti.obj", 0, 6}, {"armadillo.obj", 150000, 7}, {"armadillo.obj", 600000, 8}};
-    static const struct { const char *signature; int32_t k; } orbifolds[] = {
-        {"442", 3}, {"2222", 4}, {"432", 3}, {"55", 2}, {"237", 3}, {"2222222", 7}};
+    static const struct {
+        const char *signature;
+        int32_t k;
+    } orbifolds[] = {{"442", 3}, {"2222", 4}, {"432", 3}, {"55", 2}, {"237", 3}, {"2222222", 7}};
     int rounds = argc > 1 ? atoi(argv[1]) : 3;
     int largest = argc > 2 ? atoi(argv[2]) : 3;
     printf("%-12s %8s %-8s %5s %7s %6s %6s %7s %8s %7s %6s %6s %7s %7s %7s %6s\n", "mesh", "vertices", "orbifold",

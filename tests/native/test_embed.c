@@ -52,10 +52,10 @@ static double *lengths_of(const orb_embedding *embedding, bool on_tile) {
     const orb_mesh *mesh = embedding->mesh;
     double *lengths = malloc(3 * (size_t)mesh->n_triangles * sizeof *lengths);
     for (int32_t h = 0; h < 3 * mesh->n_triangles; h++)
-        lengths[h] = on_tile ? geometry_distance(embedding->tile->geometry,
-                                                 embedding->placed[embedding->copies->triangles[h]],
-                                                 embedding->placed[embedding->copies->triangles[halfedge_next(h)]])
-                             : mesh_edge_length(mesh, h);
+        lengths[h] =
+            on_tile ? geometry_distance(embedding->tile->geometry, embedding->placed[embedding->copies->triangles[h]],
+                                        embedding->placed[embedding->copies->triangles[halfedge_next(h)]])
+                    : mesh_edge_length(mesh, h);
     return lengths;
 }
 
@@ -146,7 +146,10 @@ TEST(rigid_444_has_one_energy_from_two_cuts) {
 
 TEST(the_plane_takes_one_step) {
     sample_mesh mesh = sample_icosphere(3);
-    static const struct { const char *signature; int32_t k; } all[] = {{"442", 3}, {"333", 3}, {"632", 3}, {"2222", 4}};
+    static const struct {
+        const char *signature;
+        int32_t k;
+    } all[] = {{"442", 3}, {"333", 3}, {"632", 3}, {"2222", 4}};
     random_state state = {5};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         int32_t cones[4];
@@ -234,7 +237,8 @@ static void check_derivatives(const char *signature, int32_t k) {
     system_gather(system, problem, embedding->position, along, rows);
     for (int64_t j = 0; j < system->pattern.n; j++)
         for (int64_t e = system->pattern.column[j]; e < system->pattern.column[j + 1]; e++)
-            expected += (system->pattern.row[e] == j ? 1 : 2) * rows[system->pattern.row[e]] * system->values[e] * rows[j];
+            expected +=
+                (system->pattern.row[e] == j ? 1 : 2) * rows[system->pattern.row[e]] * system->values[e] * rows[j];
     CHECK_NEAR(curvature, expected, 1e-5 * (1 + fabs(expected)));
     for (int i = 0; i < 3; i++)
         free(gradient[i]);
@@ -255,8 +259,10 @@ TEST(assembled_derivatives_against_finite_differences) {
 
 /* Triangles with no area, or hardly any, on the mesh: whatever is certified is reported in finite numbers. */
 TEST(reports_are_finite_numbers) {
-    static const struct { const char *signature; int32_t k; } all[] = {{"442", 3}, {"2222", 4}, {"332", 3}, {"33", 2},
-                                                                         {"237", 3}, {"222222", 6}};
+    static const struct {
+        const char *signature;
+        int32_t k;
+    } all[] = {{"442", 3}, {"2222", 4}, {"332", 3}, {"33", 2}, {"237", 3}, {"222222", 6}};
     random_state state = {11};
     int32_t certified = 0;
     for (int round = 0; round < 60; round++) {
@@ -316,7 +322,10 @@ TEST(slivers_do_not_spoil_the_modulus) {
 
 /* Sizes say nothing where all vertices coincide, or are too far apart for a double; a cut runs on all the same. */
 TEST(a_cut_without_a_length) {
-    static const struct { const char *signature; int32_t k; } all[] = {{"33", 2}, {"332", 3}, {"444", 3}};
+    static const struct {
+        const char *signature;
+        int32_t k;
+    } all[] = {{"33", 2}, {"332", 3}, {"444", 3}};
     static const double sizes[] = {0, 1e-200, 1e200, 1e308};
     for (int kind = 0; kind < 3; kind++)
         for (int i = 0; i < 4; i++) {

@@ -14,13 +14,11 @@
 
 static int allocations_left = -1; /* before the next one fails; -1: none does */
 
-static void *counted_malloc(size_t size)
-{
+static void *counted_malloc(size_t size) {
     return allocations_left == 0 ? NULL : (allocations_left -= allocations_left > 0, malloc(size));
 }
 
-static void *counted_calloc(size_t count, size_t size)
-{
+static void *counted_calloc(size_t count, size_t size) {
     return allocations_left == 0 ? NULL : (allocations_left -= allocations_left > 0, calloc(count, size));
 }
 
@@ -49,13 +47,12 @@ static struct {
     bool waits, fails;
     const char *stage;
     double fraction, second_fraction;
-    sem_t over;          /* posted when the stand-in is about to return */
+    sem_t over; /* posted when the stand-in is about to return */
     orb_status given;
 } fake;
 static atomic_int freed; /* embeddings; apart from the above, since a detached thread may free one late */
 
-static void fake_reset(void)
-{
+static void fake_reset(void) {
     memset(&fake, 0, sizeof fake);
     sem_init(&fake.inside, 0, 0);
     sem_init(&fake.leave, 0, 0);
@@ -65,8 +62,7 @@ static void fake_reset(void)
     fake.second_fraction = 0.5;
 }
 
-static bool is_blocked(int signal_number)
-{
+static bool is_blocked(int signal_number) {
     sigset_t now;
     sigemptyset(&now);
     pthread_sigmask(SIG_SETMASK, NULL, &now);
@@ -74,8 +70,7 @@ static bool is_blocked(int signal_number)
 }
 
 orb_status fake_embed(const orb_mesh_arrays *mesh, const orb_request *request, orb_embedding **embedding,
-                      orb_error *error)
-{
+                      orb_error *error) {
     bool go_on = request->progress(fake.stage, fake.fraction, request->user);
     sem_post(&fake.inside);
     if (fake.waits)
@@ -111,8 +106,7 @@ orb_status fake_embed(const orb_mesh_arrays *mesh, const orb_request *request, o
     return given;
 }
 
-void fake_embedding_free(orb_embedding *embedding)
-{
+void fake_embedding_free(orb_embedding *embedding) {
     if (embedding)
         freed++;
     free(embedding);
@@ -122,23 +116,26 @@ static const double vertices[9] = {7, 0, 0, 1, 0, 0, 0, 1, 0};
 static const int32_t triangles[3] = {0, 1, 2}, cones[3] = {5, 6, 9}, orders[3] = {4, 4, 2};
 static const double weights[6] = {0, 1, 1, 1, 2, 8};
 
-static orb_status start(orb_job **job, orb_error *error)
-{
+static orb_status start(orb_job **job, orb_error *error) {
     orb_mesh_arrays mesh = {3, vertices, 1, triangles};
-    orb_request request = {.signature = "442", .n_cones = 3, .cones = cones, .orders = orders, .clamp = 0.01,
-                           .n_edge_weights = 2, .edge_weights = weights, .weights = ORB_WEIGHTS_GIVEN};
+    orb_request request = {.signature = "442",
+                           .n_cones = 3,
+                           .cones = cones,
+                           .orders = orders,
+                           .clamp = 0.01,
+                           .n_edge_weights = 2,
+                           .edge_weights = weights,
+                           .weights = ORB_WEIGHTS_GIVEN};
     return orb_job_start(&mesh, &request, job, error);
 }
 
-static double seconds(void)
-{
+static double seconds(void) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-TEST(job_copies_what_it_is_given_and_hands_over_the_embedding)
-{
+TEST(job_copies_what_it_is_given_and_hands_over_the_embedding) {
     fake_reset();
     fake.waits = true;
     double mutable_vertices[9];
@@ -151,8 +148,12 @@ TEST(job_copies_what_it_is_given_and_hands_over_the_embedding)
     memcpy(mutable_orders, orders, sizeof orders);
     memcpy(mutable_weights, weights, sizeof weights);
     orb_mesh_arrays mesh = {3, mutable_vertices, 1, mutable_triangles};
-    orb_request request = {.signature = signature, .n_cones = 3, .cones = mutable_cones, .orders = mutable_orders,
-                           .n_edge_weights = 2, .edge_weights = mutable_weights};
+    orb_request request = {.signature = signature,
+                           .n_cones = 3,
+                           .cones = mutable_cones,
+                           .orders = mutable_orders,
+                           .n_edge_weights = 2,
+                           .edge_weights = mutable_weights};
     orb_job *job = NULL;
     orb_error error = {0};
     REQUIRE(orb_job_start(&mesh, &request, &job, &error) == ORB_OK);
@@ -174,8 +175,7 @@ TEST(job_copies_what_it_is_given_and_hands_over_the_embedding)
     orb_embedding_free(embedding);
 }
 
-TEST(job_reports_stage_and_a_fraction_that_never_falls)
-{
+TEST(job_reports_stage_and_a_fraction_that_never_falls) {
     fake_reset();
     fake.waits = true;
     fake.stage = "a stage with a name of more than thirty-one letters";
@@ -198,8 +198,7 @@ TEST(job_reports_stage_and_a_fraction_that_never_falls)
     orb_embedding_free(embedding);
 }
 
-TEST(job_hands_over_the_error)
-{
+TEST(job_hands_over_the_error) {
     fake_reset();
     fake.fails = true;
     orb_job *job = NULL;
@@ -212,8 +211,7 @@ TEST(job_hands_over_the_error)
     CHECK(orb_job_finish(job, NULL, NULL) == ORB_BOUNDARY);
 }
 
-TEST(job_cancelled_within_a_long_factorisation_is_finished_at_once)
-{
+TEST(job_cancelled_within_a_long_factorisation_is_finished_at_once) {
     fake_reset();
     fake.waits = true;
     orb_job *job = NULL;
@@ -233,8 +231,7 @@ TEST(job_cancelled_within_a_long_factorisation_is_finished_at_once)
     CHECK(fake.given == ORB_CANCELLED);
 }
 
-TEST(job_cancelled_after_it_was_done_frees_the_embedding)
-{
+TEST(job_cancelled_after_it_was_done_frees_the_embedding) {
     fake_reset();
     int before = freed;
     orb_job *job = NULL;
@@ -249,16 +246,14 @@ TEST(job_cancelled_after_it_was_done_frees_the_embedding)
     CHECK(freed == before + 1);
 }
 
-static void *cancel_soon(void *job)
-{
+static void *cancel_soon(void *job) {
     struct timespec while_finish_waits = {0, 20 * 1000 * 1000};
     nanosleep(&while_finish_waits, NULL);
     orb_job_cancel(job);
     return NULL;
 }
 
-TEST(job_cancelled_from_another_thread_wakes_the_one_that_waits)
-{
+TEST(job_cancelled_from_another_thread_wakes_the_one_that_waits) {
     fake_reset();
     fake.waits = true;
     orb_job *job = NULL;
@@ -274,8 +269,7 @@ TEST(job_cancelled_from_another_thread_wakes_the_one_that_waits)
     sem_wait(&fake.over);
 }
 
-TEST(job_survives_every_race_between_cancel_and_the_end)
-{
+TEST(job_survives_every_race_between_cancel_and_the_end) {
     for (int round = 0; round < 300; round++) {
         fake_reset();
         orb_job *job = NULL;
@@ -290,8 +284,7 @@ TEST(job_survives_every_race_between_cancel_and_the_end)
     }
 }
 
-TEST(job_survives_failed_allocations)
-{
+TEST(job_survives_failed_allocations) {
     fake_reset();
     int failures = 0;
     for (int allowed = 0;; allowed++) {
@@ -312,8 +305,7 @@ TEST(job_survives_failed_allocations)
     CHECK(failures == 7); /* the job and its six arrays */
 }
 
-TEST(job_without_arguments_is_refused)
-{
+TEST(job_without_arguments_is_refused) {
     orb_job *job = NULL;
     orb_error error = {0};
     orb_mesh_arrays mesh = {3, vertices, 1, triangles};

@@ -62,7 +62,7 @@ static void sample_disk(sample *s, double radius, double size) {
 static const struct {
     int32_t k, orders[4];
 } planes[] = {
-    {3, {4, 4, 2}}, {3, {4, 2, 4}}, {3, {2, 4, 4}}, {3, {3, 3, 3}},    {3, {6, 3, 2}}, {3, {6, 2, 3}},
+    {3, {4, 4, 2}}, {3, {4, 2, 4}}, {3, {2, 4, 4}}, {3, {3, 3, 3}}, {3, {6, 3, 2}},    {3, {6, 2, 3}},
     {3, {3, 6, 2}}, {3, {3, 2, 6}}, {3, {2, 6, 3}}, {3, {2, 3, 6}}, {4, {2, 2, 2, 2}},
 };
 enum { N_PLANES = sizeof planes / sizeof *planes };
@@ -84,9 +84,9 @@ static void deform(orb_tile *tile, double shear, double stretch) {
         tile->corners[i] = point_of(complex_of(creal(z) + shear * cimag(z), stretch * cimag(z)));
     }
     for (int32_t s = 1; s < k; s++)
-        tile->pairings[s] = isometry_pairing(tile->geometry, tile->corners[s - 1], tile->corners[s],
-                                             tile->corners[(2 * k - 2 - (s - 1)) % (2 * k - 2)],
-                                             tile->corners[2 * k - 2 - s]);
+        tile->pairings[s] =
+            isometry_pairing(tile->geometry, tile->corners[s - 1], tile->corners[s],
+                             tile->corners[(2 * k - 2 - (s - 1)) % (2 * k - 2)], tile->corners[2 * k - 2 - s]);
 }
 
 /* UV is an affine function of position that keeps orientation; every product of pairings without rotation moves it by
@@ -125,8 +125,8 @@ static void check_cell(const orb_tile *tile, double *shear) {
         if (cabs(isometry_turn(tile->geometry, g, point_of(0)) - 1) > 1e-6)
             continue;
         orb_point p = point_of(complex_of(uniform(&state), uniform(&state)));
-        double complex move = lattice_coordinates(&cell, isometry_apply(tile->geometry, g, p)) -
-                              lattice_coordinates(&cell, p);
+        double complex move =
+            lattice_coordinates(&cell, isometry_apply(tile->geometry, g, p)) - lattice_coordinates(&cell, p);
         double halves = cells == 2 ? 2 : 1, u = halves * creal(move), v = halves * cimag(move);
         CHECK_NEAR(u, round(u), 1e-8);
         CHECK_NEAR(v, round(v), 1e-8);

@@ -17,9 +17,7 @@ void *__wrap_calloc(size_t count, size_t size);
 void *__wrap_realloc(void *old, size_t size);
 
 void *__wrap_malloc(size_t size) { return allocations++ == failing ? NULL : __real_malloc(size); }
-void *__wrap_calloc(size_t count, size_t size) {
-    return allocations++ == failing ? NULL : __real_calloc(count, size);
-}
+void *__wrap_calloc(size_t count, size_t size) { return allocations++ == failing ? NULL : __real_calloc(count, size); }
 void *__wrap_realloc(void *old, size_t size) { return allocations++ == failing ? NULL : __real_realloc(old, size); }
 
 /* Embeds, reads the UVs and, on the sphere, the whole sphere. */

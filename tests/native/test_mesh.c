@@ -11,13 +11,11 @@
 
 static int allocations_left = -1; /* before all others fail; -1: none does */
 
-static void *counted_malloc(size_t size)
-{
+static void *counted_malloc(size_t size) {
     return allocations_left == 0 ? NULL : (allocations_left -= allocations_left > 0, malloc(size));
 }
 
-static void *counted_calloc(size_t count, size_t size)
-{
+static void *counted_calloc(size_t count, size_t size) {
     return allocations_left == 0 ? NULL : (allocations_left -= allocations_left > 0, calloc(count, size));
 }
 
@@ -33,8 +31,7 @@ static void *counted_calloc(size_t count, size_t size)
 #include <time.h>
 
 /* Makes the half-edges, checks that they fit the triangles and each other, and the counts; frees the sample. */
-static void check_mesh(sample_mesh sample, int32_t components, int32_t loops, int32_t genus)
-{
+static void check_mesh(sample_mesh sample, int32_t components, int32_t loops, int32_t genus) {
     const orb_mesh_arrays arrays = sample_arrays(&sample);
     orb_mesh *mesh = NULL;
     orb_error error = {0};
@@ -52,9 +49,9 @@ static void check_mesh(sample_mesh sample, int32_t components, int32_t loops, in
     bool twins = true, edges = true, vertices = true, sorted = true;
     for (int32_t h = 0; h < 3 * mesh->n_triangles; h++) {
         const int32_t g = mesh->twin[h], e = mesh->edge[h], on_edge = mesh->edge_halfedge[e];
-        twins = twins && (g < 0 || (mesh->twin[g] == h && mesh->edge[g] == e &&
-                                    halfedge_from(mesh, g) == halfedge_to(mesh, h) &&
-                                    halfedge_to(mesh, g) == halfedge_from(mesh, h)));
+        twins = twins &&
+                (g < 0 || (mesh->twin[g] == h && mesh->edge[g] == e && halfedge_from(mesh, g) == halfedge_to(mesh, h) &&
+                           halfedge_to(mesh, g) == halfedge_from(mesh, h)));
         edges = edges && (on_edge == h || on_edge == g);
     }
     for (int32_t e = 1; e < mesh->n_edges; e++) {
@@ -67,7 +64,8 @@ static void check_mesh(sample_mesh sample, int32_t components, int32_t loops, in
     int32_t used = 0;
     for (int32_t v = 0; v < mesh->n_vertices; v++) {
         const int32_t h = mesh->vertex_halfedge[v];
-        if (h < 0) continue;
+        if (h < 0)
+            continue;
         used++;
         vertices = vertices && halfedge_from(mesh, h) == v;
     }
@@ -83,8 +81,7 @@ static void check_mesh(sample_mesh sample, int32_t components, int32_t loops, in
 }
 
 /* The error that mesh_create gives; frees the sample. */
-static orb_error failure_of(sample_mesh sample)
-{
+static orb_error failure_of(sample_mesh sample) {
     const orb_mesh_arrays arrays = sample_arrays(&sample);
     orb_mesh *mesh = NULL;
     orb_error error = {0};
@@ -98,17 +95,18 @@ static orb_error failure_of(sample_mesh sample)
 }
 
 static void check_elements(const orb_error *error, orb_status status, orb_element element, int64_t found, int32_t n,
-                           const int32_t *elements)
-{
-    if (error->status != status) CHECK_FAILED("%s, not %s", orb_status_name(error->status), orb_status_name(status));
+                           const int32_t *elements) {
+    if (error->status != status)
+        CHECK_FAILED("%s, not %s", orb_status_name(error->status), orb_status_name(status));
     CHECK(error->element == element);
     CHECK(error->n_found == found);
     CHECK(error->n_elements == n);
-    if (error->n_elements == n) CHECK(memcmp(error->elements, elements, (size_t)n * sizeof *elements) == 0);
+    if (error->n_elements == n)
+        CHECK(memcmp(error->elements, elements, (size_t)n * sizeof *elements) == 0);
     CHECK(strlen(error->message) > 20 && strchr(error->message, ':'));
 }
-#define CHECK_ELEMENTS(error, status, element, found, ...)                                                   \
-    check_elements(&(error), status, element, found, (int32_t)(sizeof((int32_t[]){__VA_ARGS__}) / sizeof(int32_t)), \
+#define CHECK_ELEMENTS(error, status, element, found, ...)                                                             \
+    check_elements(&(error), status, element, found, (int32_t)(sizeof((int32_t[]){__VA_ARGS__}) / sizeof(int32_t)),    \
                    (int32_t[]){__VA_ARGS__})
 
 static sample_mesh joined(sample_mesh a, sample_mesh b) /* side by side; frees both */
@@ -116,7 +114,8 @@ static sample_mesh joined(sample_mesh a, sample_mesh b) /* side by side; frees b
     sample_mesh both = sample_new(a.n_vertices + b.n_vertices, a.n_triangles + b.n_triangles);
     memcpy(both.vertices, a.vertices, 3 * (size_t)a.n_vertices * sizeof(double));
     memcpy(both.vertices + 3 * (size_t)a.n_vertices, b.vertices, 3 * (size_t)b.n_vertices * sizeof(double));
-    for (int32_t i = 0; i < 3 * a.n_triangles; i++) both.triangles[i] = a.triangles[i];
+    for (int32_t i = 0; i < 3 * a.n_triangles; i++)
+        both.triangles[i] = a.triangles[i];
     for (int32_t i = 0; i < 3 * b.n_triangles; i++)
         both.triangles[3 * a.n_triangles + i] = b.triangles[i] + a.n_vertices;
     sample_free(&a);
@@ -124,8 +123,7 @@ static sample_mesh joined(sample_mesh a, sample_mesh b) /* side by side; frees b
     return both;
 }
 
-TEST(closed_meshes)
-{
+TEST(closed_meshes) {
     check_mesh(sample_tetrahedron(), 1, 0, 0);
     check_mesh(sample_octahedron(), 1, 0, 0);
     check_mesh(sample_cube(), 1, 0, 0);
@@ -135,8 +133,7 @@ TEST(closed_meshes)
     check_mesh(sample_pillow_rectangle(2, 1, 2, 3), 1, 0, 0);
 }
 
-TEST(open_meshes)
-{
+TEST(open_meshes) {
     const double corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     const int32_t one[] = {2, 0, 1};
     check_mesh(sample_from(3, corners, 1, one), 1, 1, 0);
@@ -149,15 +146,13 @@ TEST(open_meshes)
     check_mesh(holed, 1, 1, 1);
 }
 
-TEST(several_components_and_isolated_vertices_are_counted)
-{
+TEST(several_components_and_isolated_vertices_are_counted) {
     check_mesh(joined(sample_torus(5, 4, 3, 1), joined(sample_octahedron(), sample_triangle(1, 1, 2))), 3, 1, 1);
     sample_mesh isolated = sample_new(3, 0);
     check_mesh(joined(isolated, joined(sample_tetrahedron(), sample_new(2, 0))), 1, 0, 0);
 }
 
-TEST(turning_round_a_vertex_meets_its_fan)
-{
+TEST(turning_round_a_vertex_meets_its_fan) {
     sample_mesh sample = sample_rectangle(1, 1, 4, 5);
     const orb_mesh_arrays arrays = sample_arrays(&sample);
     orb_mesh *mesh = NULL;
@@ -183,8 +178,7 @@ TEST(turning_round_a_vertex_meets_its_fan)
     sample_free(&sample);
 }
 
-TEST(bad_arguments)
-{
+TEST(bad_arguments) {
     sample_mesh cube = sample_cube();
     orb_mesh *mesh = NULL;
     orb_error error = {0};
@@ -210,8 +204,7 @@ TEST(bad_arguments)
     sample_free(&cube);
 }
 
-TEST(coordinates_that_are_not_finite)
-{
+TEST(coordinates_that_are_not_finite) {
     sample_mesh mesh = joined(sample_icosphere(1), sample_new(1, 0));
     mesh.vertices[3 * 7 + 2] = NAN;
     mesh.vertices[3 * 3] = -INFINITY;
@@ -220,17 +213,16 @@ TEST(coordinates_that_are_not_finite)
     CHECK_ELEMENTS(error, ORB_NON_FINITE, ORB_VERTEX, 3, 3, 7, 42);
 }
 
-TEST(sixteen_elements_are_named_and_all_are_counted)
-{
+TEST(sixteen_elements_are_named_and_all_are_counted) {
     sample_mesh mesh = sample_icosphere(1);
-    for (int32_t v = 4; v < 42; v++) mesh.vertices[3 * v + 1] = NAN;
+    for (int32_t v = 4; v < 42; v++)
+        mesh.vertices[3 * v + 1] = NAN;
     const orb_error error = failure_of(mesh);
     CHECK_ELEMENTS(error, ORB_NON_FINITE, ORB_VERTEX, 38, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19);
     CHECK(strncmp(error.message, "38 vertices have", 16) == 0);
 }
 
-TEST(indices_out_of_range)
-{
+TEST(indices_out_of_range) {
     sample_mesh mesh = sample_cube();
     mesh.triangles[3 * 4 + 1] = 8;
     mesh.triangles[3 * 9] = -1;
@@ -238,8 +230,7 @@ TEST(indices_out_of_range)
     CHECK_ELEMENTS(error, ORB_INDEX_OUT_OF_RANGE, ORB_TRIANGLE, 2, 4, 9);
 }
 
-TEST(degenerate_triangles)
-{
+TEST(degenerate_triangles) {
     sample_mesh mesh = sample_cube();
     mesh.triangles[3 * 2 + 1] = mesh.triangles[3 * 2 + 2];
     mesh.triangles[3 * 5] = mesh.triangles[3 * 5 + 2];
@@ -248,8 +239,7 @@ TEST(degenerate_triangles)
 }
 
 /* A cube and one triangle more. */
-static sample_mesh cube_and(int32_t a, int32_t b, int32_t c)
-{
+static sample_mesh cube_and(int32_t a, int32_t b, int32_t c) {
     const double corners[] = {5, 0, 0};
     const int32_t extra[] = {a, b, c};
     sample_mesh cube = sample_cube(), mesh = sample_new(9, 13);
@@ -261,8 +251,7 @@ static sample_mesh cube_and(int32_t a, int32_t b, int32_t c)
     return mesh;
 }
 
-TEST(repeated_triangles)
-{
+TEST(repeated_triangles) {
     for (int turn = 0; turn < 3; turn++) { /* triangle 2 is 4, 5, 7 */
         const int32_t corner[] = {4, 5, 7};
         const int32_t a = corner[turn], b = corner[(turn + 1) % 3], c = corner[(turn + 2) % 3];
@@ -276,14 +265,14 @@ TEST(repeated_triangles)
     CHECK_ELEMENTS(leaf, ORB_REPEATED_TRIANGLE, ORB_TRIANGLE, 1, 1);
     sample_mesh cube = sample_cube(), twice = sample_new(8, 24); /* a whole mesh twice, the second time backwards */
     memcpy(twice.vertices, cube.vertices, 24 * sizeof(double));
-    for (int i = 0; i < 36; i++) twice.triangles[i] = twice.triangles[71 - i] = cube.triangles[i];
+    for (int i = 0; i < 36; i++)
+        twice.triangles[i] = twice.triangles[71 - i] = cube.triangles[i];
     sample_free(&cube);
     const orb_error doubled = failure_of(twice);
     CHECK_ELEMENTS(doubled, ORB_REPEATED_TRIANGLE, ORB_TRIANGLE, 12, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23);
 }
 
-TEST(non_manifold_edges)
-{
+TEST(non_manifold_edges) {
     const orb_error error = failure_of(cube_and(1, 5, 8));
     CHECK_ELEMENTS(error, ORB_NON_MANIFOLD_EDGE, ORB_EDGE, 1, 1, 5);
     CHECK(strstr(error.message, "1 edge has more than two triangles, first 1-5"));
@@ -291,8 +280,7 @@ TEST(non_manifold_edges)
     CHECK_ELEMENTS(wall, ORB_NON_MANIFOLD_EDGE, ORB_EDGE, 2, 0, 5, 0, 6);
 }
 
-TEST(a_fan_of_many_triangles_on_one_edge)
-{
+TEST(a_fan_of_many_triangles_on_one_edge) {
     enum { N = 100000 };
     sample_mesh book = sample_new(N + 2, N);
     for (int32_t t = 0; t < N; t++) {
@@ -304,8 +292,7 @@ TEST(a_fan_of_many_triangles_on_one_edge)
     CHECK_ELEMENTS(error, ORB_NON_MANIFOLD_EDGE, ORB_EDGE, 1, N, N + 1);
 }
 
-TEST(inconsistent_orientation)
-{
+TEST(inconsistent_orientation) {
     sample_mesh mesh = sample_cube(); /* triangle 2 is 4, 5, 7 */
     mesh.triangles[6] = 5;
     mesh.triangles[7] = 4;
@@ -313,8 +300,7 @@ TEST(inconsistent_orientation)
     CHECK_ELEMENTS(error, ORB_INCONSISTENT_ORIENTATION, ORB_EDGE, 3, 4, 5, 4, 7, 5, 7);
 }
 
-TEST(non_manifold_vertices)
-{
+TEST(non_manifold_vertices) {
     sample_mesh mesh = joined(sample_octahedron(), sample_cube()); /* they meet in 3, twice in all */
     for (int i = 24; i < 60; i++)
         mesh.triangles[i] = mesh.triangles[i] == 6 ? 3 : mesh.triangles[i] == 13 ? 5 : mesh.triangles[i];
@@ -330,8 +316,7 @@ TEST(non_manifold_vertices)
     CHECK_ELEMENTS(mixed, ORB_NON_MANIFOLD_VERTEX, ORB_VERTEX, 1, 0);
 }
 
-TEST(the_first_kind_of_defect_is_reported)
-{
+TEST(the_first_kind_of_defect_is_reported) {
     sample_mesh mesh = cube_and(4, 5, 7); /* repeated, crowded edges */
     mesh.triangles[3] = 3;
     mesh.triangles[4] = 0; /* and turned round */
@@ -347,21 +332,21 @@ TEST(the_first_kind_of_defect_is_reported)
     CHECK(failure_of(mesh).status == ORB_NON_FINITE);
 }
 
-static orb_error sphere_failure(sample_mesh sample)
-{
+static orb_error sphere_failure(sample_mesh sample) {
     const orb_mesh_arrays arrays = sample_arrays(&sample);
     orb_mesh *mesh = NULL;
     orb_error error = {0};
     CHECK(mesh_create(&arrays, &mesh, &error) == ORB_OK);
-    if (mesh) CHECK(mesh_require_sphere(mesh, &error) == error.status);
-    if (mesh) CHECK(mesh_require_sphere(mesh, NULL) == error.status);
+    if (mesh)
+        CHECK(mesh_require_sphere(mesh, &error) == error.status);
+    if (mesh)
+        CHECK(mesh_require_sphere(mesh, NULL) == error.status);
     mesh_free(mesh);
     sample_free(&sample);
     return error;
 }
 
-TEST(what_is_not_a_sphere)
-{
+TEST(what_is_not_a_sphere) {
     CHECK(sphere_failure(sample_icosphere(2)).status == ORB_OK);
     CHECK(sphere_failure(joined(sample_new(2, 0), sample_cube())).status == ORB_OK);
 
@@ -382,8 +367,7 @@ TEST(what_is_not_a_sphere)
     CHECK(torus.status == ORB_WRONG_GENUS && torus.n_elements == 0 && strstr(torus.message, "1 handle"));
 }
 
-TEST(lengths_and_areas)
-{
+TEST(lengths_and_areas) {
     const double sizes[] = {1e-200, 1e-12, 1, 1e12, 1e150};
     for (int s = 0; s < 5; s++) {
         sample_mesh sample = sample_tetrahedron();
@@ -391,7 +375,8 @@ TEST(lengths_and_areas)
         const orb_mesh_arrays arrays = sample_arrays(&sample);
         orb_mesh *mesh = NULL;
         REQUIRE(mesh_create(&arrays, &mesh, NULL) == ORB_OK);
-        for (int32_t h = 0; h < 12; h++) CHECK_NEAR(mesh_edge_length(mesh, h) / sizes[s], sqrt(8), 1e-14);
+        for (int32_t h = 0; h < 12; h++)
+            CHECK_NEAR(mesh_edge_length(mesh, h) / sizes[s], sqrt(8), 1e-14);
         if (sizes[s] > 1e-150) /* its square is a double */
             for (int32_t t = 0; t < 4; t++)
                 CHECK_NEAR(mesh_triangle_area(mesh, t) / sizes[s] / sizes[s], 2 * sqrt(3), 1e-14);
@@ -400,8 +385,7 @@ TEST(lengths_and_areas)
     }
 }
 
-TEST(every_failed_allocation_is_reported)
-{
+TEST(every_failed_allocation_is_reported) {
     sample_mesh sample = joined(sample_icosphere(1), sample_cube());
     const orb_mesh_arrays arrays = sample_arrays(&sample);
     orb_status status = ORB_OUT_OF_MEMORY;
@@ -425,8 +409,7 @@ TEST(every_failed_allocation_is_reported)
     mesh_free(NULL);
 }
 
-static double seconds(void)
-{
+static double seconds(void) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
@@ -434,8 +417,7 @@ static double seconds(void)
 
 /* Vertices of high degree, numbered to suit nobody: two poles and a belt. The time is that of n, not of n times the
  * degree. */
-TEST(a_vertex_of_high_degree_costs_no_more)
-{
+TEST(a_vertex_of_high_degree_costs_no_more) {
     enum { N = 200000, STEP = 77773 };
     sample_mesh sample = sample_new(N + 2, 2 * N);
     for (int32_t i = 0; i < N; i++) {
@@ -448,22 +430,21 @@ TEST(a_vertex_of_high_degree_costs_no_more)
     CHECK(seconds() - start < 20); /* a quadratic step takes minutes */
 }
 
-TEST(shared_meshes)
-{
+TEST(shared_meshes) {
     const struct {
         const char *name;
         int32_t components, loops, genus;
-    } known[] = {{"spot.obj", 1, 0, 0},      {"kitten.obj", 1, 0, 1},     {"three_holes.off", 1, 0, 3},
+    } known[] = {{"spot.obj", 1, 0, 0},       {"kitten.obj", 1, 0, 1},     {"three_holes.off", 1, 0, 3},
                  {"hemisphere.obj", 1, 1, 0}, {"halftunnel.off", 1, 3, 0}, {"nefertiti.obj", 1, 0, 0}};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         sample_mesh sample;
-        if (!sample_read(&sample, known[i].name)) SKIP("a mesh of ../shared/meshes is absent");
+        if (!sample_read(&sample, known[i].name))
+            SKIP("a mesh of ../shared/meshes is absent");
         check_mesh(sample, known[i].components, known[i].loops, known[i].genus);
     }
 }
 
-TEST(names_of_the_statuses)
-{
+TEST(names_of_the_statuses) {
     CHECK(strcmp(orb_status_name(ORB_OK), "ORB_OK") == 0);
     CHECK(strcmp(orb_status_name(ORB_LINEAR_SOLVER), "ORB_LINEAR_SOLVER") == 0);
     CHECK(strcmp(orb_status_name((orb_status)1000), "ORB_UNKNOWN_STATUS") == 0);
@@ -471,8 +452,7 @@ TEST(names_of_the_statuses)
         CHECK(strcmp(orb_status_name((orb_status)i), "ORB_UNKNOWN_STATUS") != 0);
 }
 
-TEST(the_record_is_cleared_and_filled)
-{
+TEST(the_record_is_cleared_and_filled) {
     orb_error error;
     memset(&error, 0x55, sizeof error);
     CHECK(error_set(&error, ORB_CANCELLED, "stopped at %d", 7) == ORB_CANCELLED);
@@ -485,8 +465,7 @@ TEST(the_record_is_cleared_and_filled)
     CHECK(error_memory(&error) == ORB_OUT_OF_MEMORY && error.n_elements == 0);
 }
 
-TEST(a_long_sentence_ends_between_characters)
-{
+TEST(a_long_sentence_ends_between_characters) {
     orb_error error;
     const size_t room = sizeof error.message - 1;
     for (size_t spare = 0; spare < 4; spare++) { /* the three bytes of a euro sign, around the record's end */
@@ -499,15 +478,19 @@ TEST(a_long_sentence_ends_between_characters)
     }
 }
 
-TEST(found_keeps_the_least_in_order)
-{
+TEST(found_keeps_the_least_in_order) {
     orb_found found = {0};
-    for (int32_t i = 0; i < 100; i++) found_add(&found, i * 37 % 100);
+    for (int32_t i = 0; i < 100; i++)
+        found_add(&found, i * 37 % 100);
     CHECK(found.found == 100 && found.entries == 16);
-    for (int32_t i = 0; i < 16; i++) CHECK(found.elements[i] == i);
+    for (int32_t i = 0; i < 16; i++)
+        CHECK(found.elements[i] == i);
     orb_found edges = {0};
-    for (int32_t i = 0; i < 30; i++) found_add_edge(&edges, 5 + i * 7 % 30, i % 3);
+    for (int32_t i = 0; i < 30; i++)
+        found_add_edge(&edges, 5 + i * 7 % 30, i % 3);
     CHECK(edges.found == 30 && edges.entries == 16);
-    for (int32_t i = 0; i < 8; i++) CHECK(edges.elements[2 * i] == 0);
-    for (int32_t i = 1; i < 8; i++) CHECK(edges.elements[2 * i - 1] < edges.elements[2 * i + 1]);
+    for (int32_t i = 0; i < 8; i++)
+        CHECK(edges.elements[2 * i] == 0);
+    for (int32_t i = 1; i < 8; i++)
+        CHECK(edges.elements[2 * i - 1] < edges.elements[2 * i + 1]);
 }

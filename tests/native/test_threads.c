@@ -64,8 +64,7 @@ TEST(threads_factorise_side_by_side) {
     REQUIRE(problems != NULL);
     for (int i = 0; i < THREADS; i++)
         problems[i].status = solve_alone(&problems[i]);
-    while (started < THREADS &&
-           pthread_create(&threads[started], NULL, solve_again_and_again, &problems[started]) == 0)
+    while (started < THREADS && pthread_create(&threads[started], NULL, solve_again_and_again, &problems[started]) == 0)
         started++;
     for (int i = 0; i < started; i++)
         pthread_join(threads[i], NULL);

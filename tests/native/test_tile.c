@@ -31,9 +31,9 @@ static double corner_angle(const orb_tile *tile, int32_t j) {
 static double polygon_area(const orb_tile *tile) {
     double area = 0;
     for (int32_t j = 1; j + 1 < 2 * tile->n_cones - 2; j++)
-        area += geometry_triangle_area(tile->geometry,
-                                       geometry_toward(tile->geometry, tile->corners[0], tile->corners[j]),
-                                       geometry_toward(tile->geometry, tile->corners[0], tile->corners[j + 1]));
+        area +=
+            geometry_triangle_area(tile->geometry, geometry_toward(tile->geometry, tile->corners[0], tile->corners[j]),
+                                   geometry_toward(tile->geometry, tile->corners[0], tile->corners[j + 1]));
     return area;
 }
 
@@ -58,7 +58,8 @@ static void check_poincare(const char *text) {
     orb_isometry turn = isometry_identity(); /* g_s = R_1 ... R_s, and R_1 ... R_k closes */
     for (int32_t i = 0; i < k; i++) {
         orb_isometry home = isometry_to_origin(geometry, tile->corners[i]);
-        orb_isometry rotation = isometry_compose(geometry, isometry_rotation_about_origin(2 * pi / tile->orders[i]), home);
+        orb_isometry rotation =
+            isometry_compose(geometry, isometry_rotation_about_origin(2 * pi / tile->orders[i]), home);
         turn = isometry_compose(geometry, turn, isometry_compose(geometry, isometry_inverse(home), rotation));
         if (i + 1 < k)
             CHECK(isometry_same(geometry, turn, tile->pairings[i + 1], 1e-9));
@@ -83,8 +84,9 @@ TEST(spherical_tiles) {
 }
 
 TEST(hyperbolic_tiles) {
-    static const char *const all[] = {"237",   "334",  "444",        "22222",           "2222222222", "2223",
-                                      "34567", "9876", "(50)(50)(50)", "(1000)(1000)(1000)", "2(70)2(80)3"};
+    static const char *const all[] = {"237",        "334",   "444",  "22222",        "2222222222",
+                                      "2223",       "34567", "9876", "(50)(50)(50)", "(1000)(1000)(1000)",
+                                      "2(70)2(80)3"};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         check_poincare(all[i]);
 }
@@ -131,8 +133,11 @@ static int32_t group_order(const orb_tile *tile, int32_t limit) {
 }
 
 TEST(spherical_groups_close_with_their_orders) {
-    static const struct { const char *text; int32_t order; } all[] = {
-        {"532", 60}, {"432", 24}, {"332", 12}, {"222", 4}, {"22(7)", 14}, {"2(12)2", 24}, {"22", 2}, {"77", 7}, {"(12)(12)", 12}};
+    static const struct {
+        const char *text;
+        int32_t order;
+    } all[] = {{"532", 60},    {"432", 24}, {"332", 12}, {"222", 4},      {"22(7)", 14},
+               {"2(12)2", 24}, {"22", 2},   {"77", 7},   {"(12)(12)", 12}};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         double euler;
         orb_tile *tile = make_tile(all[i].text, &euler);

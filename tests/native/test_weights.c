@@ -6,15 +6,9 @@
 
 static bool allocations_fail;
 
-static void *failing_malloc(size_t size)
-{
-    return allocations_fail ? NULL : malloc(size);
-}
+static void *failing_malloc(size_t size) { return allocations_fail ? NULL : malloc(size); }
 
-static void *failing_calloc(size_t count, size_t size)
-{
-    return allocations_fail ? NULL : calloc(count, size);
-}
+static void *failing_calloc(size_t count, size_t size) { return allocations_fail ? NULL : calloc(count, size); }
 
 #define malloc failing_malloc
 #define calloc failing_calloc
@@ -37,8 +31,7 @@ typedef struct weighted {
     orb_error error;
 } weighted;
 
-static weighted weigh_as(sample_mesh sample, orb_request request)
-{
+static weighted weigh_as(sample_mesh sample, orb_request request) {
     weighted all = {.sample = sample};
     const orb_mesh_arrays arrays = sample_arrays(&all.sample);
     if (mesh_create(&arrays, &all.mesh, &all.error) != ORB_OK) {
@@ -50,34 +43,30 @@ static weighted weigh_as(sample_mesh sample, orb_request request)
     return all;
 }
 
-static weighted weigh(sample_mesh sample, orb_weights kind, double clamp)
-{
+static weighted weigh(sample_mesh sample, orb_weights kind, double clamp) {
     const orb_request request = {.weights = kind, .clamp = clamp};
     return weigh_as(sample, request);
 }
 
-static void weighted_free(weighted *all)
-{
+static void weighted_free(weighted *all) {
     free(all->weights);
     mesh_free(all->mesh);
     sample_free(&all->sample);
 }
 
-static double length_of(const weighted *all, int32_t e)
-{
+static double length_of(const weighted *all, int32_t e) {
     return mesh_edge_length(all->mesh, all->mesh->edge_halfedge[e]);
 }
 
-static void check_all(sample_mesh sample, orb_weights kind, double expected)
-{
+static void check_all(sample_mesh sample, orb_weights kind, double expected) {
     weighted all = weigh(sample, kind, 1e-9);
     CHECK(all.status == ORB_OK && all.clamped == 0);
-    for (int32_t e = 0; e < all.mesh->n_edges; e++) CHECK_NEAR(all.weights[e], expected, 1e-14 * expected);
+    for (int32_t e = 0; e < all.mesh->n_edges; e++)
+        CHECK_NEAR(all.weights[e], expected, 1e-14 * expected);
     weighted_free(&all);
 }
 
-TEST(deltahedra)
-{
+TEST(deltahedra) {
     const double cot60 = 1 / sqrt(3), tan30 = 1 / sqrt(3);
     check_all(sample_tetrahedron(), ORB_WEIGHTS_COTANGENT, cot60);
     check_all(sample_octahedron(), ORB_WEIGHTS_COTANGENT, cot60);
@@ -88,8 +77,7 @@ TEST(deltahedra)
     check_all(sample_cube(), ORB_WEIGHTS_UNIFORM, 1);
 }
 
-TEST(cube)
-{
+TEST(cube) {
     weighted cot = weigh(sample_cube(), ORB_WEIGHTS_COTANGENT, 0.01);
     weighted mean = weigh(sample_cube(), ORB_WEIGHTS_MEAN_VALUE, 0);
     CHECK(cot.status == ORB_OK && mean.status == ORB_OK);
@@ -97,16 +85,17 @@ TEST(cube)
     for (int32_t e = 0; e < 18; e++) {
         const bool diagonal = length_of(&cot, e) > 2.5;
         CHECK_NEAR(cot.weights[e], diagonal ? 0.01 : 1, 1e-15);
-        if (diagonal) CHECK_NEAR(mean.weights[e], 2 * tan(PI / 8) / sqrt(8), 1e-15);
+        if (diagonal)
+            CHECK_NEAR(mean.weights[e], 2 * tan(PI / 8) / sqrt(8), 1e-15);
         /* other edges: 45 or 90 degrees at each end of each of the two triangles, by how the diagonals run */
-        if (!diagonal) CHECK_NEAR(mean.weights[e], (tan(PI / 8) + 1) / 2, 1e-15);
+        if (!diagonal)
+            CHECK_NEAR(mean.weights[e], (tan(PI / 8) + 1) / 2, 1e-15);
     }
     weighted_free(&cot);
     weighted_free(&mean);
 }
 
-TEST(boundary_edges_have_one_triangle)
-{
+TEST(boundary_edges_have_one_triangle) {
     const double corners[] = {0, 0, 0, 3, 0, 0, 0, 4, 0};
     const int32_t one[] = {0, 1, 2};
     weighted cot = weigh(sample_from(3, corners, 1, one), ORB_WEIGHTS_COTANGENT, 0.01);
@@ -124,8 +113,7 @@ TEST(boundary_edges_have_one_triangle)
 }
 
 /* The mesh with its vertices moved in their plane, so that no two triangles are alike. */
-static sample_mesh bent(sample_mesh mesh, double amount)
-{
+static sample_mesh bent(sample_mesh mesh, double amount) {
     for (int32_t v = 0; v < mesh.n_vertices; v++) {
         double *p = mesh.vertices + 3 * (size_t)v;
         const double x = p[0], y = p[1];
@@ -137,8 +125,7 @@ static sample_mesh bent(sample_mesh mesh, double amount)
 }
 
 /* The largest coordinate of sum_j w_ij (p_j - p_i) over inner vertices, against the largest term. */
-static double linear_defect(const weighted *all)
-{
+static double linear_defect(const weighted *all) {
     const orb_mesh *mesh = all->mesh;
     double *sum = sample_allocate(3 * (size_t)mesh->n_vertices, sizeof *sum), worst = 0, largest = 0;
     for (int32_t e = 0; e < mesh->n_edges; e++) {
@@ -151,13 +138,13 @@ static double linear_defect(const weighted *all)
     }
     for (int32_t v = 0; v < mesh->n_vertices; v++)
         if (mesh->twin[mesh->vertex_halfedge[v]] >= 0)
-            for (int32_t k = 0; k < 3; k++) worst = fmax(worst, fabs(sum[3 * v + k]));
+            for (int32_t k = 0; k < 3; k++)
+                worst = fmax(worst, fabs(sum[3 * v + k]));
     free(sum);
     return worst / largest;
 }
 
-TEST(cotangents_reproduce_linear_functions)
-{
+TEST(cotangents_reproduce_linear_functions) {
     const double corners[] = {0, 0, 0, 8, 0, 0, 4, 8 * sqrt(0.75), 0}; /* bent: unequal triangles, all acute */
     const int32_t one[] = {0, 1, 2};
     sample_mesh coarse = sample_from(3, corners, 1, one), fine = sample_refined(&coarse, 8);
@@ -169,19 +156,18 @@ TEST(cotangents_reproduce_linear_functions)
 }
 
 /* w_ij as Floater writes it, one direction, from the angles themselves. */
-static double one_way(const orb_mesh *mesh, int32_t from, int32_t h)
-{
+static double one_way(const orb_mesh *mesh, int32_t from, int32_t h) {
     const int32_t a = halfedge_from(mesh, h) == from ? h : halfedge_next(h); /* the corner at `from` */
     const double *p = mesh->vertices + 3 * from, *q = mesh->vertices + 3 * halfedge_to(mesh, a),
                  *r = mesh->vertices + 3 * halfedge_from(mesh, halfedge_previous(a));
     double dot = 0;
-    for (int k = 0; k < 3; k++) dot += (q[k] - p[k]) * (r[k] - p[k]);
+    for (int k = 0; k < 3; k++)
+        dot += (q[k] - p[k]) * (r[k] - p[k]);
     const double angle = acos(dot / mesh_edge_length(mesh, a) / mesh_edge_length(mesh, halfedge_previous(a)));
     return tan(angle / 2) / mesh_edge_length(mesh, h);
 }
 
-TEST(mean_values_against_the_angles)
-{
+TEST(mean_values_against_the_angles) {
     weighted all = weigh(bent(sample_rectangle(2, 1, 6, 5), 0.05), ORB_WEIGHTS_MEAN_VALUE, 0);
     REQUIRE(all.status == ORB_OK);
     for (int32_t e = 0; e < all.mesh->n_edges; e++) {
@@ -196,18 +182,19 @@ TEST(mean_values_against_the_angles)
     weighted_free(&all);
 }
 
-TEST(mean_values_reproduce_linear_functions_of_a_symmetric_mesh)
-{
+TEST(mean_values_reproduce_linear_functions_of_a_symmetric_mesh) {
     /* In a lattice w_ij = w_ji, and the symmetrised weights keep Floater's linear precision. */
     sample_mesh lattice = sample_rectangle(3, 1.7, 6, 6);
-    for (int32_t v = 0; v < lattice.n_vertices; v++) lattice.vertices[3 * v] += 0.3 * lattice.vertices[3 * v + 1];
+    for (int32_t v = 0; v < lattice.n_vertices; v++)
+        lattice.vertices[3 * v] += 0.3 * lattice.vertices[3 * v + 1];
     weighted all = weigh(lattice, ORB_WEIGHTS_MEAN_VALUE, 0);
     REQUIRE(all.status == ORB_OK);
     int32_t tested = 0;
     for (int32_t v = 0; v < all.mesh->n_vertices; v++) { /* not beside the two corners where a diagonal is turned */
         const double x = all.sample.vertices[3 * v] - 0.3 * all.sample.vertices[3 * v + 1],
                      y = all.sample.vertices[3 * v + 1];
-        if (x < 0.9 || x > 2.1 || y < 0.5 || y > 1.2) continue;
+        if (x < 0.9 || x > 2.1 || y < 0.5 || y > 1.2)
+            continue;
         double sum[3] = {0}, size = 0;
         int32_t h = all.mesh->vertex_halfedge[v];
         const int32_t start = h;
@@ -219,15 +206,15 @@ TEST(mean_values_reproduce_linear_functions_of_a_symmetric_mesh)
             }
             h = all.mesh->twin[halfedge_previous(h)];
         } while (h != start);
-        for (int k = 0; k < 3; k++) CHECK_NEAR(sum[k] / size, 0, 1e-14);
+        for (int k = 0; k < 3; k++)
+            CHECK_NEAR(sum[k] / size, 0, 1e-14);
         tested++;
     }
     CHECK(tested == 9);
     weighted_free(&all);
 }
 
-TEST(size_does_not_matter)
-{
+TEST(size_does_not_matter) {
     const double sizes[] = {1e-300, 1e-160, 1e-12, 1e12, 1e160, 1e300};
     for (int kind = ORB_WEIGHTS_COTANGENT; kind <= ORB_WEIGHTS_MEAN_VALUE; kind++) {
         weighted one = weigh(bent(sample_rectangle(2, 1, 5, 6), 0.05), (orb_weights)kind, 0.01);
@@ -245,19 +232,18 @@ TEST(size_does_not_matter)
     }
 }
 
-TEST(thin_triangles_keep_their_digits)
-{
+TEST(thin_triangles_keep_their_digits) {
     for (double thin = 1e-2; thin > 1e-12; thin *= 1e-2) {
         const double needle[] = {0, 0, 0, thin, 0, 0, 0, 1, 0}, cap[] = {-1, 0, 0, 1, 0, 0, 0, thin, 0};
         const int32_t one[] = {0, 1, 2};
         weighted all = weigh(sample_from(3, needle, 1, one), ORB_WEIGHTS_COTANGENT, 1e-30);
         CHECK(all.status == ORB_OK);
-        CHECK_NEAR(all.weights[0] * thin, 0.5, 1e-15);       /* faces the point of the needle */
-        CHECK_NEAR(all.weights[1] / thin, 0.5, 1e-15);       /* faces the angle that is nearly right */
+        CHECK_NEAR(all.weights[0] * thin, 0.5, 1e-15); /* faces the point of the needle */
+        CHECK_NEAR(all.weights[1] / thin, 0.5, 1e-15); /* faces the angle that is nearly right */
         weighted_free(&all);
         all = weigh(sample_from(3, cap, 1, one), ORB_WEIGHTS_COTANGENT, 0.01);
         CHECK(all.status == ORB_OK && all.clamped == 1);
-        CHECK(all.weights[0] == 0.01);                       /* faces the obtuse angle */
+        CHECK(all.weights[0] == 0.01); /* faces the obtuse angle */
         CHECK_NEAR(all.weights[1] * thin, 0.5, 1e-15);
         weighted_free(&all);
         all = weigh(sample_from(3, cap, 1, one), ORB_WEIGHTS_MEAN_VALUE, 0);
@@ -269,14 +255,15 @@ TEST(thin_triangles_keep_their_digits)
     }
 }
 
-TEST(thin_triangles_in_any_direction)
-{
+TEST(thin_triangles_in_any_direction) {
     const double a[3] = {2.0 / 7, 3.0 / 7, 6.0 / 7}, b[3] = {3.0 / 7, -6.0 / 7, 2.0 / 7}; /* at right angles */
     for (double thin = 1e-2; thin > 1e-12; thin *= 1e-2) {
         for (int turn = 0; turn < 3; turn++) {
             sample_mesh needle = sample_new(3, 1);
-            for (int c = 0; c < 3; c++) needle.triangles[c] = (c + turn) % 3;
-            for (int k = 0; k < 3; k++) needle.vertices[3 + k] = thin * a[k], needle.vertices[6 + k] = b[k];
+            for (int c = 0; c < 3; c++)
+                needle.triangles[c] = (c + turn) % 3;
+            for (int k = 0; k < 3; k++)
+                needle.vertices[3 + k] = thin * a[k], needle.vertices[6 + k] = b[k];
             weighted all = weigh(needle, ORB_WEIGHTS_COTANGENT, 1e-30);
             CHECK(all.status == ORB_OK);
             CHECK_NEAR(all.weights[0] * 2 * thin, 1, 2e-15);
@@ -285,8 +272,7 @@ TEST(thin_triangles_in_any_direction)
     }
 }
 
-TEST(an_area_made_by_rounding_is_zero)
-{
+TEST(an_area_made_by_rounding_is_zero) {
     const int32_t one[] = {0, 1, 2};
     for (int i = 1; i < 200; i++) {
         double line[9] = {0};
@@ -296,21 +282,20 @@ TEST(an_area_made_by_rounding_is_zero)
         }
         weighted all = weigh(sample_from(3, line, 1, one), ORB_WEIGHTS_COTANGENT, 0.01);
         CHECK(all.status == ORB_OK && all.clamped == 3);
-        for (int e = 0; e < 3; e++) CHECK(all.weights[e] == 0.01);
+        for (int e = 0; e < 3; e++)
+            CHECK(all.weights[e] == 0.01);
         weighted_free(&all);
     }
 }
 
 /* Closed; vertices 0, 1, 2 of triangle 0 are on a line. */
-static sample_mesh with_flat_triangle(void)
-{
+static sample_mesh with_flat_triangle(void) {
     const double vertices[] = {0, 0, 0, 1, 0, 0, 2, 0, 0, 1, 1, 0, 1, -1, 0.5, 1, 0, 3};
     const int32_t triangles[] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 4, 0, 3, 5, 3, 2, 5, 2, 4, 5, 4, 0, 5};
     return sample_from(6, vertices, 8, triangles);
 }
 
-TEST(zero_area_takes_the_clamp)
-{
+TEST(zero_area_takes_the_clamp) {
     weighted all = weigh(with_flat_triangle(), ORB_WEIGHTS_COTANGENT, 0.01);
     CHECK(all.status == ORB_OK);
     int64_t raised = 0;
@@ -335,54 +320,53 @@ TEST(zero_area_takes_the_clamp)
     weighted_free(&all);
 }
 
-TEST(zero_area_has_no_mean_values)
-{
+TEST(zero_area_has_no_mean_values) {
     weighted all = weigh(with_flat_triangle(), ORB_WEIGHTS_MEAN_VALUE, 0);
     CHECK(all.status == ORB_ZERO_AREA_TRIANGLE && all.error.element == ORB_TRIANGLE);
     CHECK(all.error.n_found == 1 && all.error.n_elements == 1 && all.error.elements[0] == 0);
     weighted_free(&all);
 }
 
-TEST(a_mesh_in_one_point)
-{
+TEST(a_mesh_in_one_point) {
     sample_mesh sample = sample_octahedron();
     sample_scale(&sample, 0);
     weighted all = weigh(sample, ORB_WEIGHTS_COTANGENT, 0.01);
     CHECK(all.status == ORB_OK && all.clamped == 12);
-    for (int32_t e = 0; e < 12; e++) CHECK_NEAR(all.weights[e], 0.02, 1e-17);
+    for (int32_t e = 0; e < 12; e++)
+        CHECK_NEAR(all.weights[e], 0.02, 1e-17);
     const orb_request mean = {.weights = ORB_WEIGHTS_MEAN_VALUE};
     CHECK(weights_compute(all.mesh, &mean, all.weights, NULL, &all.error) == ORB_ZERO_AREA_TRIANGLE);
     CHECK(all.error.n_found == 8 && all.error.elements[7] == 7);
     weighted_free(&all);
 }
 
-TEST(the_clamp_counts_edges)
-{
+TEST(the_clamp_counts_edges) {
     for (double clamp = 0.001; clamp < 2; clamp *= 3) {
         weighted all = weigh(bent(sample_rectangle(1, 1, 8, 8), 0.03), ORB_WEIGHTS_COTANGENT, clamp);
         int64_t at_clamp = 0;
-        for (int32_t e = 0; e < all.mesh->n_edges; e++) at_clamp += all.weights[e] == clamp;
+        for (int32_t e = 0; e < all.mesh->n_edges; e++)
+            at_clamp += all.weights[e] == clamp;
         CHECK(all.status == ORB_OK && all.clamped == at_clamp && at_clamp > 0);
         weighted_free(&all);
     }
 }
 
-TEST(pillows_need_no_clamp_but_for_zeros)
-{
+TEST(pillows_need_no_clamp_but_for_zeros) {
     const double angles[][2] = {{PI / 2, PI / 4}, {PI / 3, PI / 3}, {PI / 6, PI / 3}, {0.4, 2}};
     for (int i = 0; i < 5; i++) {
-        weighted all = weigh(i == 4 ? sample_pillow_rectangle(2, 1, 6, 4)
-                                    : sample_pillow_triangle(angles[i][0], angles[i][1], 5),
-                             ORB_WEIGHTS_COTANGENT, 1e-13);
+        weighted all =
+            weigh(i == 4 ? sample_pillow_rectangle(2, 1, 6, 4) : sample_pillow_triangle(angles[i][0], angles[i][1], 5),
+                  ORB_WEIGHTS_COTANGENT, 1e-13);
         CHECK(all.status == ORB_OK);
-        for (int32_t e = 0; e < all.mesh->n_edges; e++) CHECK(all.weights[e] < 2e-13 || all.weights[e] > 0.05);
+        for (int32_t e = 0; e < all.mesh->n_edges; e++)
+            CHECK(all.weights[e] < 2e-13 || all.weights[e] > 0.05);
         /* a wrong sign would show as a sum that does not vanish; inside a copy the sums are those of a flat disk */
         double *sum = sample_allocate(2 * (size_t)all.mesh->n_vertices, sizeof *sum), worst = 0;
         for (int32_t h = 0; h < 3 * all.mesh->n_triangles / 2; h++) { /* the first copy's half-edges */
             const int32_t a = halfedge_from(all.mesh, h), b = halfedge_to(all.mesh, h);
             for (int32_t k = 0; k < 2; k++) {
-                const double term = all.weights[all.mesh->edge[h]] *
-                                    (all.mesh->vertices[3 * b + k] - all.mesh->vertices[3 * a + k]);
+                const double term =
+                    all.weights[all.mesh->edge[h]] * (all.mesh->vertices[3 * b + k] - all.mesh->vertices[3 * a + k]);
                 sum[2 * a + k] += term;
             }
         }
@@ -395,7 +379,8 @@ TEST(pillows_need_no_clamp_but_for_zeros)
                 used = true;
                 h = all.mesh->twin[halfedge_previous(h)];
             } while (h != start);
-            if (inner && used) worst = fmax(worst, fmax(fabs(sum[2 * v]), fabs(sum[2 * v + 1])));
+            if (inner && used)
+                worst = fmax(worst, fmax(fabs(sum[2 * v]), fabs(sum[2 * v + 1])));
         }
         CHECK_NEAR(worst, 0, 1e-12);
         free(sum);
@@ -408,12 +393,12 @@ TEST(pillows_need_no_clamp_but_for_zeros)
 enum { ROWS = 18 };
 
 /* The cube's edges in another order, every second one backwards; the weight tells the edge. */
-static void cube_rows(double rows[3 * ROWS])
-{
+static void cube_rows(double rows[3 * ROWS]) {
     sample_mesh cube = sample_cube();
     const orb_mesh_arrays arrays = sample_arrays(&cube);
     orb_mesh *mesh = NULL;
-    if (mesh_create(&arrays, &mesh, NULL) != ORB_OK) abort();
+    if (mesh_create(&arrays, &mesh, NULL) != ORB_OK)
+        abort();
     for (int32_t e = 0; e < ROWS; e++) {
         const int32_t h = mesh->edge_halfedge[e], r = e * 7 % ROWS;
         rows[3 * r] = e % 2 ? halfedge_from(mesh, h) : halfedge_to(mesh, h);
@@ -424,24 +409,22 @@ static void cube_rows(double rows[3 * ROWS])
     sample_free(&cube);
 }
 
-static weighted weigh_given(const double *rows, int32_t n)
-{
+static weighted weigh_given(const double *rows, int32_t n) {
     const orb_request request = {.weights = ORB_WEIGHTS_GIVEN, .n_edge_weights = n, .edge_weights = rows};
     return weigh_as(sample_cube(), request);
 }
 
-TEST(given_rows_in_any_sequence)
-{
+TEST(given_rows_in_any_sequence) {
     double rows[3 * ROWS];
     cube_rows(rows);
     weighted all = weigh_given(rows, ROWS);
     CHECK(all.status == ORB_OK && all.clamped == 0);
-    for (int32_t e = 0; e < ROWS; e++) CHECK(all.weights[e] == 0.5 + e);
+    for (int32_t e = 0; e < ROWS; e++)
+        CHECK(all.weights[e] == 0.5 + e);
     weighted_free(&all);
 }
 
-static void check_rows(const double *rows, int32_t n, int64_t found, int32_t a, int32_t b)
-{
+static void check_rows(const double *rows, int32_t n, int64_t found, int32_t a, int32_t b) {
     weighted all = weigh_given(rows, n);
     CHECK(all.status == ORB_BAD_WEIGHT && all.error.status == ORB_BAD_WEIGHT);
     CHECK(all.error.element == (a < 0 ? ORB_NOTHING : ORB_EDGE) && all.error.n_found == found);
@@ -450,8 +433,7 @@ static void check_rows(const double *rows, int32_t n, int64_t found, int32_t a, 
     weighted_free(&all);
 }
 
-TEST(given_rows_that_are_wrong)
-{
+TEST(given_rows_that_are_wrong) {
     double rows[3 * ROWS + 6], good[3 * ROWS];
     cube_rows(good);
     const double bad[] = {0, -1, NAN, INFINITY};
@@ -483,8 +465,7 @@ TEST(given_rows_that_are_wrong)
     check_rows(good, 0, ROWS, 0, 1);
 }
 
-TEST(bad_requests)
-{
+TEST(bad_requests) {
     const double clamps[] = {0, -0.01, NAN, INFINITY};
     for (int i = 0; i < 4; i++) {
         weighted all = weigh(sample_cube(), ORB_WEIGHTS_COTANGENT, clamps[i]);
@@ -499,8 +480,7 @@ TEST(bad_requests)
     weighted_free(&all);
 }
 
-TEST(failed_allocations_are_reported)
-{
+TEST(failed_allocations_are_reported) {
     weighted all = weigh(sample_cube(), ORB_WEIGHTS_UNIFORM, 0.01);
     double rows[3 * ROWS];
     cube_rows(rows);
