@@ -95,7 +95,7 @@ def read_edges(mesh: bpy.types.Mesh) -> np.ndarray:
 
 
 def read_mesh(mesh: bpy.types.Mesh) -> MeshArrays:
-    """Triangles of the whole mesh, hidden faces included. Quads and n-gons are triangulated; the mesh stays as it is."""
+    """Triangles of the whole mesh, hidden faces included. Quads and n-gons are triangulated; the mesh stays."""
     n_loops, n_polygons = len(mesh.loops), len(mesh.polygons)
     loop_vertices = read_loop_vertices(mesh)
     loops, polygons = _triangle_loops(mesh, n_loops, n_polygons)

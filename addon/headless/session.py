@@ -41,6 +41,7 @@ class Unwrapped:
     result: core.Result
     layout: faces.FaceLayout
     material: bpy.types.Material
+    remark: str  # what could not be made, and why; empty if nothing
 
 
 def run(words: Sequence[str]) -> list[str]:
@@ -80,17 +81,25 @@ def _unwrap(arguments: Arguments, n_cones: int) -> Unwrapped:
     if not result.report["certificate"]["bijective"]:
         raise RunError("the result is not certified to be a bijection")
     layout = faces.layout_of(result, arrays, result.chart)
-    return Unwrapped(name, obj, arrays, result, layout, _dress(obj, arrays, result, layout))
+    remark = _write_sphere(obj, arrays, result) if result.geometry == "spherical" else ""
+    return Unwrapped(name, obj, arrays, result, layout, _dress(obj, arrays, result, layout), remark)
+
+
+def _write_sphere(obj: bpy.types.Object, arrays: blender_mesh.MeshArrays, result: core.Result) -> str:
+    """The shape key; on a mesh too coarse for the map onto the whole sphere, why there is none."""
+    try:
+        blender_mesh.write_shape_key(obj, placed_sphere(result.whole_sphere(), arrays))
+    except core.OrbifoldError as error:
+        return f"no shape key: {one_line(error)}"
+    return ""
 
 
 def _dress(obj: bpy.types.Object, arrays: blender_mesh.MeshArrays, result: core.Result,
            layout: faces.FaceLayout) -> bpy.types.Material:
-    """UV map, seams, shape key and the one material on the object."""
+    """UV map, seams and the one material on the object."""
     mesh = obj.data
     blender_mesh.write_uv(mesh, arrays, layout.uv)
     blender_mesh.mark_seams(mesh, layout.seams)
-    if result.geometry == "spherical":
-        blender_mesh.write_shape_key(obj, placed_sphere(result.whole_sphere(), arrays))
     material = materials.make_material(obj, result, layout)
     mesh.materials.clear()
     materials.assign(obj, material)
@@ -164,6 +173,7 @@ def _summary(unwrapped: Unwrapped, output: Path, seconds: float) -> list[str]:
         f"certified: a bijection, {report['certificate']['flipped']} flipped triangles, mean quasi-conformal error "
         f"{report['distortion']['quasi_conformal_mean']:.3f}",
         f"wrote {files} in {seconds:.1f} s",
+        *([unwrapped.remark] if unwrapped.remark else []),
     ]
 
 

@@ -102,13 +102,16 @@ class UV_OT_orbifold_unwrap(EmbeddingOperator, bpy.types.Operator):
 
     def compute(self, result: core.Result) -> tuple:
         layout = faces.layout_of(result, self._arrays, getattr(self, f"chart_{result.geometry}"))
-        key = None
+        key, missing = None, ""
         if result.geometry == "spherical" and self.sphere_key:
-            key = sphere_map.placed_sphere(result.whole_sphere(), self._arrays)
-        return layout, key
+            try:
+                key = sphere_map.placed_sphere(result.whole_sphere(), self._arrays)
+            except core.OrbifoldError as error:  # the UVs are certified all the same, and not to be lost
+                missing = f" No shape key: {error}."
+        return layout, key, missing
 
     def write(self, context: bpy.types.Context, result: core.Result, computed: tuple) -> str:
-        layout, key = computed
+        layout, key, missing = computed
         obj = context.active_object
         blender_mesh.write_uv(obj.data, self._arrays, layout.uv)
         if self.mark_seams:
@@ -117,10 +120,11 @@ class UV_OT_orbifold_unwrap(EmbeddingOperator, bpy.types.Operator):
             blender_mesh.write_shape_key(obj, key)
         if self.pattern:
             materials.assign(obj, materials.make_material(obj, result, layout))
-        distortion = result.report["distortion"]["quasi_conformal_mean"]
+        distortion = result.report["distortion"]
         return (
             f"Orbifold {result.signature} ({result.geometry}): a bijection, certified; "
-            f"mean angle distortion {distortion:.3f}, area spread {result.report['distortion']['log_area_std']:.2f}."
+            f"mean angle distortion {distortion['quasi_conformal_mean']:.3f}, "
+            f"area spread {distortion['log_area_std']:.2f}.{missing}"
         )
 
 

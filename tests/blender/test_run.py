@@ -151,6 +151,23 @@ def test_off_orders_and_defaults(tmp_path: Path) -> None:
     assert json.loads((tmp_path / "out" / "pear.json").read_text())["orbifold"]["cones"] == cones
 
 
+def test_certified_uvs_are_kept_where_the_whole_sphere_is_too_coarse(tmp_path: Path) -> None:
+    """An icosahedron has too few triangles round a cone of order 100 to cover the sphere once."""
+    g = (1 + np.sqrt(5)) / 2
+    vertices = np.array([(0, s, t * g) for s in (-1, 1) for t in (-1, 1)])
+    vertices = np.concatenate([vertices, vertices[:, [2, 0, 1]], vertices[:, [1, 2, 0]]])
+    near = np.linalg.norm(vertices[:, None] - vertices[None], axis=2) < 2.1
+    triples = [(i, j, k) for i in range(12) for j in range(i) for k in range(j)]
+    triangles = [(i, j, k) for i, j, k in triples if near[i, j] and near[j, k] and near[k, i]]
+    outwards = np.array([t if np.linalg.det(vertices[list(t)]) > 0 else t[::-1] for t in triangles])
+    poles = [0, int(np.argmin(vertices @ vertices[0]))]
+    mesh = write_off(tmp_path / "ico.off", vertices, outwards)
+    done = run(mesh, "--orbifold", "(100)(100)", "--cones", ",".join(map(str, poles)), "--output", tmp_path / "out")
+    assert done.returncode == 0, done.stderr
+    assert "no shape key" in done.stdout
+    assert {path.suffix for path in (tmp_path / "out").iterdir()} == ENDINGS
+
+
 def test_creature(tmp_path: Path) -> None:
     done = run("--output", tmp_path / "out")
     assert done.returncode == 0, done.stderr
