@@ -82,6 +82,8 @@ class EmbeddingOperator:
 
     # ----------------------------------------------------------------------------- what subclasses provide
 
+    problem = staticmethod(mesh_problem)  # of a context: the sentence why the operator cannot run; None where it can
+
     def prepare(self, context: bpy.types.Context) -> None:
         """Checks before a long computation; raises BlenderMeshError."""
 
@@ -94,6 +96,13 @@ class EmbeddingOperator:
         raise NotImplementedError
 
     # ------------------------------------------------------------------------------------------ the stages
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        problem = cls.problem(context)
+        if problem is not None:
+            cls.poll_message_set(problem)
+        return problem is None
 
     def _start(self, context: bpy.types.Context) -> bool:
         obj = context.active_object

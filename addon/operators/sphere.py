@@ -42,12 +42,7 @@ class OBJECT_OT_orbifold_sphere(EmbeddingOperator, bpy.types.Operator):
         ),
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        problem = sphere_problem(context)
-        if problem is not None:
-            cls.poll_message_set(problem)
-        return problem is None
+    problem = staticmethod(sphere_problem)
 
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout

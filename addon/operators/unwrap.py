@@ -73,12 +73,7 @@ class UV_OT_orbifold_unwrap(EmbeddingOperator, bpy.types.Operator):
         default=False,
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        problem = unwrap_problem(context)
-        if problem is not None:
-            cls.poll_message_set(problem)
-        return problem is None
+    problem = staticmethod(unwrap_problem)
 
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
