@@ -4,36 +4,9 @@
 #include <string.h>
 
 #include "check.h"
-#include "embedding.h"
-#include "meshes.h"
-#include "random.h"
-#include "system.h"
+#include "embed.h"
 
 static const double pi = 3.14159265358979323846;
-
-static orb_status embed(const sample_mesh *mesh, const char *signature, int32_t n_cones, const int32_t *cones,
-                        double clamp, orb_embedding **embedding, orb_error *error) {
-    orb_mesh_arrays arrays = sample_arrays(mesh);
-    orb_request request = orb_request_default();
-    request.signature = signature;
-    request.n_cones = n_cones;
-    request.cones = cones;
-    request.clamp = clamp;
-    return orb_embed(&arrays, &request, embedding, error);
-}
-
-/* Distinct random vertices. */
-static void pick_cones(random_state *state, int32_t n_vertices, int32_t k, int32_t *cones) {
-    for (int32_t i = 0; i < k; i++) {
-        bool taken = true;
-        while (taken) {
-            cones[i] = random_below(state, n_vertices);
-            taken = false;
-            for (int32_t j = 0; j < i; j++)
-                taken = taken || cones[j] == cones[i];
-        }
-    }
-}
 
 /* Largest relative difference between a triangle's edge lengths on the tile and `expected`, one per half-edge. */
 static double length_gap(const orb_embedding *embedding, const double *expected, double scale) {
@@ -181,80 +154,6 @@ TEST(every_solid_and_every_number_of_cones) {
         }
         sample_free(&mesh);
     }
-}
-
-/* Gradient and Hessian of the assembled problem, against finite differences of its energy and gradient. */
-static void check_derivatives(const char *signature, int32_t k) {
-    random_state state = {7};
-    sample_mesh mesh = sample_icosphere(2);
-    int32_t cones[5];
-    pick_cones(&state, mesh.n_vertices, k, cones);
-    orb_embedding *embedding = NULL;
-    orb_problem *problem = NULL;
-    orb_system *system = NULL;
-    orb_error error;
-    REQUIRE(embed(&mesh, signature, k, cones, 0.01, &embedding, &error) == ORB_OK);
-    REQUIRE(problem_create(embedding->mesh, embedding->copies, embedding->tile, cones, embedding->weights, &problem,
-                           &error) == ORB_OK);
-    if (k == 2)
-        problem_hold_rotation(problem, 0, embedding->tile->corners[0]);
-    REQUIRE(system_create(problem, false, &system, &error) == ORB_OK);
-    size_t n = (size_t)mesh.n_vertices, copies = (size_t)embedding->copies->n_copies;
-    double complex *turn = malloc(copies * sizeof *turn), *along = calloc(n, sizeof *along);
-    double complex *gradient[3];
-    orb_point *moved = malloc(n * sizeof *moved), *placed = malloc(copies * sizeof *placed);
-    double *scale = malloc(n * sizeof *scale), *rows = malloc(2 * n * sizeof *rows), relative, energy[3];
-    double complex *frames = calloc(n, sizeof *frames);
-    for (size_t v = 0; v < n; v++) { /* start away from the minimum */
-        double complex push = 0.05 * (random_unit(&state) - 0.5 + I * (random_unit(&state) - 0.5));
-        if (problem->freedom[v] == 2)
-            embedding->position[v] = geometry_exp(problem->geometry, embedding->position[v], push);
-        along[v] = random_unit(&state) - 0.5 + I * (random_unit(&state) - 0.5);
-        if (problem->freedom[v] == 1)
-            along[v] = problem_direction(problem, embedding->position[v]);
-        if (problem->freedom[v] == 0)
-            along[v] = 0;
-    }
-    double step = 1e-5;
-    for (int i = 0; i < 3; i++) {
-        gradient[i] = malloc(n * sizeof **gradient);
-        for (size_t v = 0; v < n; v++)
-            moved[v] = geometry_exp(problem->geometry, embedding->position[v], (i - 1) * step * along[v]);
-        problem_place(problem, moved, placed, turn);
-        energy[i] = problem_energy(problem, placed, turn, moved, gradient[i], scale, &relative);
-        if (i != 1)
-            for (size_t v = 0; v < n; v++) /* back into the frame at the middle */
-                gradient[i][v] *= geometry_transport(problem->geometry, moved[v], embedding->position[v]);
-    }
-    double slope = 0, curvature = 0, expected = 0;
-    for (size_t v = 0; v < n; v++) {
-        slope += creal(conj(along[v]) * gradient[1][v]);
-        curvature += creal(conj(along[v]) * (gradient[2][v] - gradient[0][v])) / (2 * step);
-    }
-    CHECK_NEAR((energy[2] - energy[0]) / (2 * step), slope, 1e-6 * (1 + fabs(slope)));
-    problem_place(problem, embedding->position, placed, turn);
-    system_assemble(system, problem, embedding->position, placed, turn, HESSIAN_EXACT);
-    system_gather(system, problem, embedding->position, along, rows);
-    for (int64_t j = 0; j < system->pattern.n; j++)
-        for (int64_t e = system->pattern.column[j]; e < system->pattern.column[j + 1]; e++)
-            expected +=
-                (system->pattern.row[e] == j ? 1 : 2) * rows[system->pattern.row[e]] * system->values[e] * rows[j];
-    CHECK_NEAR(curvature, expected, 1e-5 * (1 + fabs(expected)));
-    for (int i = 0; i < 3; i++)
-        free(gradient[i]);
-    free(turn), free(along), free(moved), free(placed), free(scale), free(rows), free(frames);
-    system_free(system);
-    problem_free(problem);
-    orb_embedding_free(embedding);
-    sample_free(&mesh);
-}
-
-TEST(assembled_derivatives_against_finite_differences) {
-    check_derivatives("442", 3);
-    check_derivatives("432", 3);
-    check_derivatives("237", 3);
-    check_derivatives("22222", 5);
-    check_derivatives("55", 2);
 }
 
 /* Triangles with no area, or hardly any, on the mesh: whatever is certified is reported in finite numbers. */

@@ -1,0 +1,33 @@
+/* Embeddings for tests. SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef EMBED_H
+#define EMBED_H
+
+#include "embedding.h"
+#include "meshes.h"
+#include "random.h"
+
+static inline orb_status embed(const sample_mesh *mesh, const char *signature, int32_t n_cones, const int32_t *cones,
+                               double clamp, orb_embedding **embedding, orb_error *error) {
+    orb_mesh_arrays arrays = sample_arrays(mesh);
+    orb_request request = orb_request_default();
+    request.signature = signature;
+    request.n_cones = n_cones;
+    request.cones = cones;
+    request.clamp = clamp;
+    return orb_embed(&arrays, &request, embedding, error);
+}
+
+/* Distinct random vertices. */
+static inline void pick_cones(random_state *state, int32_t n_vertices, int32_t k, int32_t *cones) {
+    for (int32_t i = 0; i < k; i++) {
+        bool taken = true;
+        while (taken) {
+            cones[i] = random_below(state, n_vertices);
+            taken = false;
+            for (int32_t j = 0; j < i; j++)
+                taken = taken || cones[j] == cones[i];
+        }
+    }
+}
+
+#endif
