@@ -35,17 +35,17 @@ typedef enum orb_status {
     ORB_REPEATED_TRIANGLE,        /* two triangles on the same three vertices; elements: triangles */
     ORB_NON_MANIFOLD_EDGE,        /* more than two triangles on an edge; elements: its two vertices, pairwise */
     ORB_NON_MANIFOLD_VERTEX,      /* triangles around a vertex are more than one fan; elements: vertices */
-    ORB_INCONSISTENT_ORIENTATION, /* two triangles run through an edge the same way; elements: edges */
+    ORB_INCONSISTENT_ORIENTATION, /* orientable, but two triangles run through an edge the same way; elements: edges */
     ORB_SEVERAL_COMPONENTS,       /* elements: one vertex of each component */
-    ORB_BOUNDARY,                 /* the signature has no mirror but the mesh has a boundary; elements: edges */
-    ORB_WRONG_GENUS,              /* the closed mesh is not sphere-like */
+    ORB_BOUNDARY,                 /* boundary loops are not as many as the signature's mirrors; elements: edges */
+    ORB_WRONG_GENUS,              /* handles or cross-caps are not the signature's */
     ORB_ZERO_AREA_TRIANGLE,       /* makes a weight infinite or the certificate fail; elements: triangles */
     ORB_BAD_SIGNATURE,            /* does not parse; elements[0]: position in the string */
     ORB_BAD_ORDER,                /* an order below 2, or orders that are not the signature's */
     ORB_BAD_ORBIFOLD,             /* MN with M != N, or one cone: no surface has this orbifold as a quotient */
     ORB_UNSUPPORTED_SIGNATURE,    /* good, but not one that this version embeds, or divides the whole sphere by */
     ORB_CONE_COUNT,               /* the signature has another number of cones than were given */
-    ORB_BAD_CONE,                 /* a cone is given twice, is out of range or isolated; elements: vertices */
+    ORB_BAD_CONE,                 /* given twice, out of range, isolated, inside where a corner should be; vertices */
     ORB_BAD_WEIGHT,               /* a given weight is not positive and finite, or an edge has none; elements: edges */
     ORB_CUT_BLOCKED,              /* no path joins two cones, within bounds; elements: the two vertices */
     ORB_NOT_CONVERGED,            /* elements: vertices, where any stand out */
@@ -68,7 +68,8 @@ typedef struct orb_error {
     char message[320];
 } orb_error;
 
-/* A closed (sphere-like) triangle mesh, consistently oriented. Vertices that no triangle uses are tolerated. */
+/* A triangle mesh in one piece, with or without boundary, of any genus; consistently oriented where it is orientable.
+ * Vertices that no triangle uses are tolerated. */
 typedef struct orb_mesh_arrays {
     int32_t n_vertices;
     const double *vertices; /* [n_vertices*3] */
@@ -77,20 +78,42 @@ typedef struct orb_mesh_arrays {
 } orb_mesh_arrays;
 
 typedef enum orb_weights {
-    ORB_WEIGHTS_COTANGENT = 0, /* (cot a + cot b) / 2, clamped from below once per edge */
-    ORB_WEIGHTS_MEAN_VALUE,    /* Floater 2003, symmetrised: (w_ij + w_ji) / 2 */
-    ORB_WEIGHTS_UNIFORM,       /* 1 */
-    ORB_WEIGHTS_GIVEN          /* edge_weights of the request */
+    ORB_WEIGHTS_COTANGENT = 0,    /* (cot a + cot b) / 2, clamped from below once per edge */
+    ORB_WEIGHTS_MEAN_VALUE,       /* Floater 2003, symmetrised: (w_ij + w_ji) / 2 */
+    ORB_WEIGHTS_UNIFORM,          /* 1 */
+    ORB_WEIGHTS_GIVEN,            /* edge_weights of the request */
+    ORB_WEIGHTS_CONFORMAL,        /* cotangents of the target's own metric, intrinsic Delaunay, then mended */
+    ORB_WEIGHTS_DELAUNAY,         /* cotangents of the mesh's metric on its intrinsic Delaunay triangulation */
+    ORB_WEIGHTS_MEAN_VALUE_EXACT  /* Floater 2003 as it stands, not symmetric: plane only */
 } orb_weights;
+
+/* What to do with boundary loops beyond the signature's mirrors: those without picked corners, shortest first. */
+typedef enum orb_holes {
+    ORB_HOLES_REFUSE = 0, /* ORB_BOUNDARY */
+    ORB_HOLES_FILL,       /* close them for the computation; the result has refined_from -1 there */
+    ORB_HOLES_MIRROR      /* add a * to the signature for each */
+} orb_holes;
+
+/* Instead of an orbifold: the boundary of a disk goes to a convex polygon, by arc length, and stays there (Tutte 1963;
+ * Floater 2003; theorem 1 of 2016 and 2017). */
+typedef struct orb_polygon {
+    int32_t curvature; /* +1, 0, -1 */
+    int32_t n_corners; /* >= 3 */
+    const double *corners; /* [n_corners*3] points of the geometry's model, counter-clockwise; NULL: regular */
+    double radius;         /* of the regular one, in the geometry; 0: as large as suits it */
+} orb_polygon; /* the request's cones are the mesh's vertices that go to the corners, in turn; none: spread evenly */
 
 /* Called now and then from the thread that computes; return false to cancel. `fraction` in [0, 1] never falls. */
 typedef bool (*orb_progress)(const char *stage, double fraction, void *user);
 
 typedef struct orb_request {
-    const char *signature; /* Conway's notation: "442", "2222", "22(12)"; digits are one order each */
+    const char *signature; /* Conway's notation: "442", "22(12)", "*632", "4*2", "**", "22x", "ooo", "3*22" */
     int32_t n_cones;
-    const int32_t *cones;  /* [n_cones] vertices, in the signature's order; the cut runs through them in turn */
-    const int32_t *orders; /* [n_cones] order of each cone, a permutation of the signature's; NULL: as it stands */
+    const int32_t *cones;  /* [n_cones] vertices of cones and mirror corners, in the signature's order; a sphere's cut
+                              runs through its cones in turn; corners may start anywhere and run either way round */
+    const int32_t *orders; /* [n_cones] order of each, a permutation of the signature's; NULL: as it stands */
+    orb_holes holes;
+    const orb_polygon *polygon; /* not NULL: a fixed boundary, and no signature */
     orb_weights weights;
     double clamp;               /* least cotangent weight, > 0 */
     int32_t n_edge_weights;     /* for ORB_WEIGHTS_GIVEN: one row for each edge of the mesh, in any sequence */
@@ -107,12 +130,19 @@ typedef struct orb_signature_info {
     double euler;         /* Euler characteristic of the orbifold */
     int32_t n_cones;      /* cones and mirror corners */
     bool supported;       /* whether orb_embed takes it */
+    int32_t n_interior;   /* of n_cones, those that are cones: the first ones */
+    int32_t n_mirrors, n_crosscaps, n_handles;
 } orb_signature_info;
 
 /* Errors: ORB_BAD_SIGNATURE (elements[0]: position), ORB_BAD_ORDER, ORB_BAD_ORBIFOLD. `orders` may be NULL or have
  * room for `capacity` entries, of which the first min(n_cones, capacity) are written. */
 ORB_API orb_status orb_signature_read(const char *signature, orb_signature_info *info, int32_t *orders,
                                       int32_t capacity, orb_error *error);
+
+/* The polygon of a signature's simplest cut, for drawings: points[capacity*3] of the geometry's model, of which the
+ * first min(*n_corners, capacity) are written, counter-clockwise, and for each side whether it is a mirror. */
+ORB_API orb_status orb_signature_tile(const char *signature, double *points, bool *mirrors, int32_t capacity,
+                                      int32_t *n_corners, orb_error *error);
 
 /* The whole pipeline: topology, weights, cut, tile, initial guess, minimisation, certificate. On success
  * *embedding is a new object; on failure it is NULL. */
@@ -124,13 +154,21 @@ ORB_API void orb_embedding_free(orb_embedding *embedding);
 /* What an embedding holds; the arrays live as long as it does. A copy of a vertex is one of the images that a
  * vertex has because the mesh was cut; copy v for v < n_vertices is the vertex itself. */
 typedef struct orb_view {
-    int32_t n_vertices, n_triangles, n_copies, n_cones, n_edges, n_seams;
+    int32_t n_vertices, n_triangles, n_copies, n_cones, n_edges, n_seams, n_input_triangles;
+    const double *vertices;        /* [n_vertices*3] the input's come first; then those of refined edges and holes */
+    const int32_t *triangles;      /* [n_triangles*3] refined where need was, oriented alike within the layout */
+    const int32_t *refined_from;   /* [n_triangles] the input triangle that each lies in, -1 in a filled hole; NULL:
+                                      the triangles are the input's (though perhaps turned over) */
+    const int32_t *input_corners;  /* [n_input_triangles*3] where each corner of the input is in `triangles` */
     const int32_t *cut_triangles;  /* [n_triangles*3] the mesh's triangles, in copies */
     const int32_t *cut_to_vertex;  /* [n_copies] */
     const double *embedding;       /* [n_copies*3] (x, y, 1), unit sphere, or upper sheet of the hyperboloid */
     const double *embedding_low;   /* [n_copies*3] what double precision cut off: the point is the sum of the two */
     const int32_t *cones, *orders; /* [n_cones] */
-    const double *weights;         /* [n_edges*3] rows i, j, w_ij as used */
+    const bool *mirrors;           /* [n_cones] whether it is a mirror corner */
+    const double *weights;         /* [n_edges*3] rows i, j, w_ij as used; NULL where they live on other edges */
+    int32_t n_generators;          /* isometries that generate the group: 3 x 3 matrices, by rows */
+    const double *generators;      /* [n_generators*9] on the model's coordinates; the mirrors' reflections too */
     const int32_t *seams;          /* [n_seams*2] edges of the mesh across which the layout is not continuous */
     const char *signature, *geometry;
 } orb_view;
@@ -139,8 +177,12 @@ ORB_API void orb_embedding_view(const orb_embedding *embedding, orb_view *view);
 /* Measures of an embedding. Lengths and areas on the tile are those of the geometry. The measures of distortion leave
  * out triangles without area, and are 0 where no other is left. */
 typedef struct orb_report {
-    int32_t vertices, triangles, components, euler, boundary_loops, genus; /* of the mesh */
+    int32_t vertices, triangles, components, euler, boundary_loops, genus; /* of the input; cross-caps if not */
+    bool orientable;                                                       /* orientable */
+    int32_t filled_holes, refined_edges; /* holes closed, and edges halved, for the computation */
     double orbifold_euler;
+    int32_t n_moduli;  /* dimensions of the family of flat orbifolds from which the least conformal energy chose */
+    double modulus[2]; /* shape of the lattice of translations, second over first of a reduced basis (plane only) */
     int32_t iterations;       /* steps of the minimiser */
     double energy;            /* 1/2 sum over glued edges of w_ij d_ij^2 */
     double relative_gradient; /* max over vertices of |g_v| / sum_j w_vj d_vj */
