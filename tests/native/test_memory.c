@@ -32,11 +32,13 @@ static orb_status use_everything(const sample_mesh *mesh, const orb_request *req
         orb_embedding_report(embedding, &report);
         status = orb_uv(embedding, ORB_CHART_DEFAULT, room, NULL, &error);
     }
-    if (status == ORB_OK && report.orbifold_euler > 0)
+    if (status == ORB_OK && report.orbifold_euler > 0 && report.boundary_loops == report.filled_holes)
         status = orb_whole_sphere(embedding, room, NULL, &error);
     orb_embedding_free(embedding);
     return status;
 }
+
+static bool filling;
 
 static void fail_each(sample_mesh mesh, const char *signature, int32_t k, const int32_t *cones) {
     double *room = calloc(6 * (size_t)mesh.n_triangles + 3 * (size_t)mesh.n_vertices, sizeof *room);
@@ -44,6 +46,7 @@ static void fail_each(sample_mesh mesh, const char *signature, int32_t k, const 
     request.signature = signature;
     request.n_cones = k;
     request.cones = cones;
+    request.holes = filling ? ORB_HOLES_FILL : ORB_HOLES_REFUSE;
     CHECK(use_everything(&mesh, &request, room) == ORB_OK);
     long survived = 0, reported = 0;
     for (long n = 0;; n++) {
@@ -71,3 +74,18 @@ TEST(out_of_memory_on_the_sphere) { fail_each(sample_icosphere(1), "432", 3, (in
 TEST(out_of_memory_with_two_cones) { fail_each(sample_icosphere(1), "33", 2, (int32_t[]){0, 30}); }
 TEST(out_of_memory_in_the_hyperbolic_plane) { fail_each(sample_icosphere(1), "237", 3, (int32_t[]){0, 14, 30}); }
 TEST(out_of_memory_on_a_refined_mesh) { fail_each(sample_cube(), "22222", 5, (int32_t[]){0, 6, 1, 7, 2}); }
+
+/* A disk, a band and a projective plane: mirrors that vertices slide along, chords that are halved, gluings that reflect,
+ * holes that are filled. */
+TEST(out_of_memory_with_mirrors) { fail_each(sample_fan(7), "*442", 3, (int32_t[]){1, 3, 6}); }
+TEST(out_of_memory_with_a_cone_and_a_corner) { fail_each(sample_fan(7), "3*2", 2, (int32_t[]){0, 4}); }
+TEST(out_of_memory_on_an_annulus) { fail_each(sample_band(7, false), "**", 0, (int32_t[]){0}); }
+TEST(out_of_memory_on_a_moebius_band) { fail_each(sample_band(7, true), "*x", 0, (int32_t[]){0}); }
+TEST(out_of_memory_on_a_torus) { fail_each(sample_torus(5, 4, 3, 1), "o", 0, (int32_t[]){0}); }
+TEST(out_of_memory_with_a_hole) {
+    sample_mesh open = sample_icosphere(1);
+    open.n_triangles -= 1;
+    filling = true;
+    fail_each(open, "432", 3, (int32_t[]){0, 14, 30});
+    filling = false;
+}
