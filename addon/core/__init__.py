@@ -12,7 +12,16 @@ from .fitting import fitting_signatures
 from .meshio import MeshFileError, read_mesh
 from .polygon import Polygon
 from .result import CHARTS, Result
-from .signatures import Outline, Signature, describe, format_signature, geometry_of, parse_signature, tile_outline
+from .signatures import (
+    Outline,
+    Signature,
+    describe,
+    format_signature,
+    geometry_of,
+    parse_signature,
+    surface_name,
+    tile_outline,
+)
 from .topology import Topology, topology_of
 
 __all__ = [
@@ -34,6 +43,7 @@ __all__ = [
     "parse_signature",
     "read_mesh",
     "start_embedding",
+    "surface_name",
     "tile_outline",
     "topology_of",
 ]

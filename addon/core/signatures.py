@@ -78,12 +78,14 @@ class Outline:
     corners: np.ndarray  # (k, 3) points of the geometry's model, counter-clockwise
     mirrors: np.ndarray  # (k,) bool: whether the side from each corner to the next is a mirror
     curvature: int
+    area: float  # of the orbifold, 2 pi |euler|; 0 in the plane
 
 
 def tile_outline(signature: str) -> Outline:
     """For drawings. OrbifoldError as `parse_signature`, or ORB_UNSUPPORTED_SIGNATURE."""
     corners, mirrors = binding.signature_tile(signature)
-    return Outline(corners, mirrors, parse_signature(signature).curvature)
+    read = parse_signature(signature)
+    return Outline(corners, mirrors, read.curvature, 2 * np.pi * abs(read.euler) if read.curvature else 0.0)
 
 
 # ------------------------------------------------------------------------------------------------- in words
@@ -95,7 +97,7 @@ def describe(signature: str) -> str:
     features = _angles("cone", [360 / order for order in read.cone_orders])
     corners = [180 / order for border in read.borders for order in border]
     features += _angles("mirror corner", corners)
-    text = f"{signature}: {_surface(read)}"
+    text = f"{signature}: {surface_name(read.n_handles, read.n_crosscaps, read.n_mirrors)}"
     if features:
         text += f" with {' and '.join(features)}"
     if read.n_mirrors and not corners:
@@ -120,20 +122,19 @@ def _angles(name: str, degrees: Sequence[float]) -> list[str]:
     return [f"{name}s of {', '.join(words[:-1])} and {words[-1]} degrees"]
 
 
-def _surface(read: Signature) -> str:
-    """The underlying surface: three cross-caps are a handle and a cross-cap."""
-    borders = read.n_mirrors
-    if read.n_crosscaps:
-        crosscaps = read.n_crosscaps + 2 * read.n_handles
+def surface_name(handles: int, crosscaps: int, borders: int) -> str:
+    """ "disk", "torus with 2 borders", ... Three cross-caps are a handle and a cross-cap."""
+    if crosscaps:
+        crosscaps += 2 * handles
         if borders == 1 and crosscaps == 1:
-            return "M\u00f6bius band"
+            return "Möbius band"
         names = {1: "projective plane", 2: "Klein bottle"}
         name = names.get(crosscaps, f"surface with {crosscaps} cross-caps")
     else:
-        if read.n_handles == 0 and borders in (1, 2):
+        if handles == 0 and borders in (1, 2):
             return ("disk", "annulus")[borders - 1]
         names = {0: "sphere", 1: "torus"}
-        name = names.get(read.n_handles, f"surface of genus {read.n_handles}")
+        name = names.get(handles, f"surface of genus {handles}")
     if borders:
         name += f" with {borders} border{'s' if borders > 1 else ''}"
     return name
