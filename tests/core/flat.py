@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Flat surfaces whose harmonic map onto their own orbifold is known: the identity, up to a similarity.
 
-Rows of nearly equilateral triangles, vertices moved at random, so that every cotangent weight of the flat metric is
-positive; glued to a torus, a Klein bottle, an annulus, a Moebius band, or not at all. Where the vertices lie in space
-does not matter then: what counts is the weights."""
+Rows of equilateral triangles, glued to a torus, a Klein bottle, an annulus, a Moebius band, or not at all. Vertices may
+be moved at random as long as every cotangent weight of the flat metric is positive. Flat closed surfaces do not fit into
+space, but folded up they do: all triangles onto one, which is an isometry of each."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ HEIGHT = np.sqrt(3) / 2  # of a row, the triangles' sides being 1
 
 @dataclass(frozen=True)
 class Flat:
-    vertices: np.ndarray  # (n, 3) somewhere in space
+    vertices: np.ndarray  # (n, 3) where the triangles are as in the plane, if `roughness` is 0 or nothing is glued
     triangles: np.ndarray  # (m, 3)
     corners: np.ndarray  # (m, 3, 2) the triangles as they are in the plane
     weights: np.ndarray  # (E, 3) rows i, j, w
@@ -44,7 +44,7 @@ def strip(lower, upper):
 
 def flat_surface(signature, nx=9, ny=8, shift=0, roughness=0.08, seed=3):
     """signature: "o", "xx", "**", "*x" or "*2222". ny is even. The torus's second translation goes `shift` to the
-    side."""
+    side. Without roughness nx and shift are multiples of 3, as many as the corners of the one triangle."""
     random = np.random.default_rng(seed)
     rows, points, place = [], [], []  # the unglued rectangle: numbers, (x, y), (i, j)
     for j in range(ny + 1):
@@ -73,7 +73,11 @@ def flat_surface(signature, nx=9, ny=8, shift=0, roughness=0.08, seed=3):
     rectangle = [rows[0][0][0], rows[0][-1][0], rows[-1][-1][0], rows[-1][0][0]] if signature == "*2222" else []
     weights = weights_of(triangles, corners)
     assert (weights[:, 2] > 0.01).all()
-    return Flat(_in_space(points[kept], nx, ny), triangles, corners, weights, number_of[rectangle].tolist())
+    if signature == "*2222":
+        vertices = np.column_stack([points + move, np.zeros(len(points))])
+    else:
+        vertices = _on_a_torus(points[kept], nx, ny) if roughness else _folded(points[kept])
+    return Flat(vertices, triangles, corners, weights, number_of[rectangle].tolist())
 
 
 def _glued(signature, i, j, nx, ny, shift):
@@ -86,7 +90,13 @@ def _glued(signature, i, j, nx, ny, shift):
     return i, j
 
 
-def _in_space(points, nx, ny):
+def _folded(points):
+    """The three corners of a triangle, in turn, for the vertices of the triangular lattice."""
+    up = np.round(points[:, 1] / HEIGHT)
+    return np.eye(3)[np.round(points[:, 0] - 1.5 * up).astype(int) % 3] / np.sqrt(2)
+
+
+def _on_a_torus(points, nx, ny):
     u, v = 2 * np.pi * points[:, 0] / nx, 1.9 * np.pi * points[:, 1] / (ny * HEIGHT)
     r = 2 + np.cos(v)
     return np.stack([r * np.cos(0.95 * u), r * np.sin(0.95 * u), np.sin(v)], 1)

@@ -5,7 +5,7 @@ sphere and of the hyperbolic plane in the limit of fine meshes."""
 import numpy as np
 import pytest
 from conway import features
-from flat import flat_surface, subdivided_triangle, weights_of
+from flat import HEIGHT, flat_surface, subdivided_triangle, weights_of
 from meshes import icosphere
 from surfaces import antipodal_quotient, hemisphere
 
@@ -30,19 +30,39 @@ def check_similar(result, corners, tolerance=1e-10):
     assert distance == pytest.approx(area, rel=1e-10)  # Dirichlet's energy of the identity
 
 
-@pytest.mark.parametrize("signature", ["o", "xx", "**", "*x", "*2222"])
-@pytest.mark.parametrize("nx, ny, shift", [(9, 8, 0), (5, 14, 2), (12, 4, 5)])
+FLAT = ["o", "xx", "**", "*x", "*2222"]
+
+
+@pytest.mark.parametrize("signature", FLAT)
+@pytest.mark.parametrize("nx, ny, shift", [(9, 8, 0), (6, 14, 3), (12, 4, 6)])
 def test_flat_surfaces_reproduce_themselves(signature, nx, ny, shift):
-    flat = flat_surface(signature, nx, ny, shift)
-    result = core.embed(flat.vertices, flat.triangles, signature, flat.cones, weights=flat.weights)
+    flat = flat_surface(signature, nx, ny, shift, roughness=0.08 * (signature == "*2222"))
+    result = core.embed(flat.vertices, flat.triangles, signature, flat.cones)
     assert result.report["orbifold"]["moduli"] == (2 if signature == "o" else 1)
+    assert result.report["distortion"]["quasi_conformal_max"] == pytest.approx(1, abs=1e-10)
     check_similar(result, flat.corners)
 
 
+@pytest.mark.parametrize("signature", FLAT)
+@pytest.mark.parametrize("nx, ny, shift", [(9, 8, 0), (5, 14, 2), (12, 4, 5)])
+def test_any_flat_weights_give_an_affine_image(signature, nx, ny, shift):
+    """The modulus suits the mesh as it is in space, which here is another one than that of the weights."""
+    flat = flat_surface(signature, nx, ny, shift)
+    result = core.embed(flat.vertices, flat.triangles, signature, flat.cones, weights=flat.weights)
+    x, y = (flat.corners - np.roll(flat.corners, -1, 1)).reshape(-1, 2).T
+    ours = sides(corners_of(result)).ravel()
+    # |A e|^2 = e' (A'A) e for all sides e: three unknowns
+    design = np.stack([x * x, 2 * x * y, y * y], 1) / ours[:, None] ** 2
+    metric, *_ = np.linalg.lstsq(design, np.ones(len(design)), rcond=None)
+    assert np.abs(design @ metric - 1).max() < 1e-10
+    if signature != "o":
+        assert abs(metric[1]) < 1e-10 * metric[0]  # no shear along or across an axis of reflection
+
+
 def test_the_modulus_of_a_torus_is_reported():
-    flat = flat_surface("o", 9, 8, 2)
-    result = core.embed(flat.vertices, flat.triangles, "o", [], weights=flat.weights)
-    tau = complex(-2, 8 * np.sqrt(3) / 2) / 9
+    flat = flat_surface("o", 9, 8, 3, roughness=0)
+    result = core.embed(flat.vertices, flat.triangles, "o", [])
+    tau = complex(-3, 8 * HEIGHT) / 9
     found = complex(*result.report["orbifold"]["modulus"])
     alike = [s * z for z in (tau, -tau.conjugate(), -1 / tau, 1 / tau.conjugate()) for s in (1, -1)]
     assert min(abs(found - z - shift) for z in alike for shift in (-1, 0, 1)) < 1e-10
@@ -94,7 +114,7 @@ def error_of_triangle(signature, n):
     flat, triangles = subdivided_triangle(corners, n)
     points = onto_model(flat, sign)
     vertices = points if sign > 0 else np.column_stack([points[:, :2] / (1 + points[:, 2:]), np.zeros(len(points))])
-    result = core.embed(vertices, triangles, signature, [0, 1, 2])
+    result = core.embed(vertices, triangles, signature, [0, 1, 2], clamp=1e-6)
     found = np.empty_like(points)
     found[triangles] = corners_of(result)
     motion = np.linalg.solve(found[:3], points[:3])  # the isometry, perhaps a reflection, of the corners
@@ -102,8 +122,9 @@ def error_of_triangle(signature, n):
     return np.abs(found @ motion - points).max()
 
 
-@pytest.mark.parametrize("signature", ["*222", "*332", "*432", "*532", "*225", "*223", "*237", "*334", "*555"])
+@pytest.mark.parametrize("signature", ["*222", "*332", "*432", "*532", "*225", "*223", "*334", "*345", "*555"])
 def test_curved_triangles_reproduce_themselves_in_the_limit(signature):
+    """(The hyperbolic ones have no right angle: there the meshes would have negative weights.)"""
     coarse, fine = (error_of_triangle(signature, n) for n in (6, 18))
     assert fine < coarse / 4 or fine < 1e-9
     assert fine < 3e-3
@@ -142,4 +163,4 @@ def test_a_rotational_quotient_of_the_sphere_is_a_root(family, order):
 
     errors = [error(level) for level in (2, 3)]
     assert errors[1] < errors[0] * (0.65 if order == 2 else 0.75)
-    assert errors[1] < (0.03 if order == 2 else 0.1)
+    assert errors[1] < (0.04 if order == 2 else 0.1)

@@ -128,11 +128,20 @@ def test_random_weights_on_a_random_convex_polygon(name, geometry, seed):
     corners = raised(np.stack([np.cos(angles), np.sin(angles)], 1), geometry)
     loop = boundary_loops(triangles)[0]
     picked = along(vertices, loop, 6, random.random())
-    for cones in (picked, picked[::-1]):
-        polygon = core.Polygon(geometry, corners=corners)
-        result = core.embed(vertices, triangles, None, cones, weights=random_weights(triangles, seed), polygon=polygon)
-        check(result, geometry, 1e-6)
-        check_boundary(result, corners, cones)
+    weights, polygon = random_weights(triangles, seed), core.Polygon(geometry, corners=corners)
+    result = core.embed(vertices, triangles, None, picked, weights=weights, polygon=polygon)
+    check(result, geometry, 1e-6)
+    check_boundary(result, corners, picked)
+
+
+@pytest.mark.parametrize("geometry", GEOMETRIES)
+def test_corners_against_the_triangles_turn_the_mesh_over(geometry):
+    vertices, triangles = MESHES["disk"]()
+    corners = raised(np.array([[0.9, 0.1], [0, 1], [-0.8, 0.3], [-0.3, -0.6]]), geometry)
+    picked = along(vertices, boundary_loops(triangles)[0], 4)[::-1]
+    result = core.embed(vertices, triangles, None, picked, polygon=core.Polygon(geometry, corners=corners))
+    check(result, geometry)
+    check_boundary(result, corners, picked)
 
 
 @pytest.mark.parametrize("geometry", GEOMETRIES)
