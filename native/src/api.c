@@ -1,4 +1,5 @@
 /* The whole way from mesh arrays to a certified embedding. SPDX-License-Identifier: GPL-3.0-or-later */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -40,6 +41,8 @@ static orb_status read_input(workshop *work, const orb_mesh_arrays *arrays, orb_
     embedding->weights = malloc(((size_t)embedding->mesh->n_edges + 1) * sizeof *embedding->weights);
     if (!embedding->weights)
         return error_memory(error);
+    if (work->request->weights == ORB_WEIGHTS_GIVEN)
+        return surface_given_weights(embedding->surface, work->request, embedding->weights, error);
     return weights_compute(embedding->mesh, work->request, embedding->weights, &embedding->report.clamped_weights,
                            error);
 }
@@ -191,7 +194,15 @@ static orb_status minimise(workshop *work, orb_error *error) {
         return error_memory(error);
     }
     problem_place(work->problem, embedding->position, embedding->placed, turn);
-    modulus_choose(embedding);
+    double covariance[3] = {1, 0, 1};
+    if (!geometry_has_translations(embedding->tile->geometry))
+        ;                                                 /* rigid */
+    else if (work->request->weights == ORB_WEIGHTS_GIVEN) /* they say what the metric is */
+        problem_covariance(work->problem, embedding->placed, covariance);
+    else
+        distortion_covariance(embedding, covariance);
+    modulus_choose(embedding, covariance);
+    modulus_report(embedding);
     if (report->n_moduli > 0)
         problem_place(work->problem, embedding->position, embedding->placed, turn);
     free(turn);
@@ -268,6 +279,57 @@ static orb_status embed_once(const orb_mesh_arrays *mesh, const orb_request *req
     return status;
 }
 
+/* needed[plain edges]: the halved chords without which a triangle would be flat, or nearly. All corners of a plain
+ * triangle lie in one piece of the layout (cut_graph.h). Returns how many could have stayed whole. */
+static int32_t count_needless(const orb_embedding *embedding, uint8_t *needed) {
+    static const double flat = 1e-3; /* sine of the greatest angle */
+    const orb_surface *surface = embedding->surface;
+    const orb_mesh *mesh = embedding->mesh, *plain = surface->plain;
+    const int32_t *copy = embedding->copies->triangles;
+    int32_t needless = surface->n_halved;
+    memset(needed, 0, (size_t)plain->n_edges);
+    for (int32_t t = 0; t < mesh->n_triangles;) {
+        int32_t p = surface->parent[t], pieces = t;
+        orb_point corner[3] = {{0}};
+        for (; t < mesh->n_triangles && surface->parent[t] == p; t++)
+            for (int32_t h = 3 * t; h < 3 * t + 3; h++)
+                for (int c = 0; c < 3; c++)
+                    if (mesh->triangles[h] == plain->triangles[3 * p + c])
+                        corner[c] = embedding->placed[copy[h]];
+        if (t - pieces == 1)
+            continue;
+        /* A triangle that was turned over with its pieces is as good. */
+        if (fabs(certificate_sine(embedding->tile->geometry, corner)) > flat)
+            continue;
+        for (int32_t h = 3 * p; h < 3 * p + 3; h++)
+            needed[plain->edge[h]] = 1;
+    }
+    for (int32_t k = 0; k < surface->n_halved; k++)
+        needless -= needed[surface->halved[k]];
+    return needless;
+}
+
+/* Once more without the halvings that turned out to be needless; if that fails, *embedding stays. */
+static orb_status drop_needless(const orb_mesh_arrays *mesh, const orb_request *request, orb_embedding **embedding,
+                                orb_error *error) {
+    const orb_surface *surface = (*embedding)->surface;
+    if (surface->n_halved == 0)
+        return ORB_OK;
+    uint8_t *needed = malloc((size_t)surface->plain->n_edges + 1);
+    if (!needed)
+        return error_memory(error);
+    orb_embedding *better = NULL;
+    orb_status status = ORB_OK;
+    if (count_needless(*embedding, needed) > 0)
+        status = embed_once(mesh, request, needed, &better, error);
+    free(needed);
+    if (better) {
+        orb_embedding_free(*embedding);
+        *embedding = better;
+    }
+    return status == ORB_CANCELLED || status == ORB_OUT_OF_MEMORY ? status : ORB_OK;
+}
+
 orb_status orb_embed(const orb_mesh_arrays *mesh, const orb_request *request, orb_embedding **result,
                      orb_error *error) {
     if (!result)
@@ -276,5 +338,11 @@ orb_status orb_embed(const orb_mesh_arrays *mesh, const orb_request *request, or
     if (!mesh || !request || request->n_cones < 0 || (request->n_cones > 0 && !request->cones))
         return error_set(error, ORB_BAD_ARGUMENT, "orb_embed needs a mesh, a request and its cones");
     orb_status status = embed_once(mesh, request, NULL, result, error);
-    return status == ORB_OK ? error_set(error, ORB_OK, "%s", "") : status;
+    if (status == ORB_OK)
+        status = drop_needless(mesh, request, result, error);
+    if (status == ORB_OK)
+        return error_set(error, ORB_OK, "%s", "");
+    orb_embedding_free(*result);
+    *result = NULL;
+    return status;
 }

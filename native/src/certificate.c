@@ -30,6 +30,14 @@ int certificate_corner(const orb_geometry *geometry, const orb_point corners[3],
     return corner;
 }
 
+double certificate_sine(const orb_geometry *geometry, const orb_point corners[3]) {
+    int sign, k = certificate_corner(geometry, corners, &sign);
+    double complex s = geometry_toward(geometry, corners[k], corners[(k + 1) % 3]);
+    double complex t = geometry_toward(geometry, corners[k], corners[(k + 2) % 3]);
+    double size = cabs(s) * cabs(t);
+    return size > 0 ? cimag(conj(s) * t) / size : 0;
+}
+
 static void triangle_corners(const orb_embedding *embedding, int32_t t, orb_point corners[3]) {
     for (int c = 0; c < 3; c++)
         corners[c] = embedding->placed[embedding->copies->triangles[3 * (size_t)t + (size_t)c]];

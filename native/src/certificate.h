@@ -15,5 +15,7 @@ orb_status certificate_check(orb_embedding *embedding, orb_error *error);
 /* The corner of a geodesic triangle whose edges are most nearly orthogonal, and the sign of the orientation there,
  * where it has the least rounding error. */
 int certificate_corner(const orb_geometry *geometry, const orb_point corners[3], int *sign);
+/* The sine of the angle there. */
+double certificate_sine(const orb_geometry *geometry, const orb_point corners[3]);
 
 #endif

@@ -263,7 +263,8 @@ orb_status cut_surface(orb_mesh *mesh, const int32_t *parent, const orb_marks *m
     if (status == ORB_OK)
         status = mesh_orient(mesh, cut, error);
     if (status == ORB_OK)
-        status = disk_create(mesh, cut, first < 0 ? -1 : mesh->vertex_halfedge[marks->vertex[first]], marks, disk, error);
+        status =
+            disk_create(mesh, cut, first < 0 ? -1 : mesh->vertex_halfedge[marks->vertex[first]], marks, disk, error);
     free(cut);
     return status;
 }

@@ -42,8 +42,8 @@ typedef struct orb_marks {
  * cut (mesh_orient). The corners are the marked vertices and the vertices where the graph branches or ends. `start`: a
  * half-edge of the disk's boundary that leaves corner 0, or -1: the first there is. Error: ORB_CUT_BLOCKED if what is
  * left is not a disk or has no corner. O(n). */
-orb_status disk_create(const orb_mesh *mesh, const uint8_t *cut, int32_t start, const orb_marks *marks,
-                       orb_disk **disk, orb_error *error);
+orb_status disk_create(const orb_mesh *mesh, const uint8_t *cut, int32_t start, const orb_marks *marks, orb_disk **disk,
+                       orb_error *error);
 void disk_free(orb_disk *disk);
 
 #endif

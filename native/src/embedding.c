@@ -28,7 +28,8 @@ static void find_seams(orb_embedding *embedding) {
     const int32_t *triangles = embedding->copies->triangles;
     for (int32_t e = 0; e < mesh->n_edges; e++) {
         int32_t h = mesh->edge_halfedge[e], twin = mesh->twin[h];
-        if (twin < 0 || (triangles[h] == triangles[halfedge_next(twin)] && triangles[halfedge_next(h)] == triangles[twin]))
+        if (twin < 0 ||
+            (triangles[h] == triangles[halfedge_next(twin)] && triangles[halfedge_next(h)] == triangles[twin]))
             continue;
         int32_t *seam = embedding->seams + 2 * (size_t)embedding->n_seams++;
         seam[0] = halfedge_from(mesh, h);

@@ -164,8 +164,7 @@ static orb_status joiner_allocate(joiner *work, orb_error *error) {
     work->first = calloc(m + 1, sizeof(int32_t));
     work->piece = malloc(pieces * sizeof(int32_t));
     work->queue = malloc(pieces * sizeof(int32_t));
-    if (!work->next_copy || !work->cone_of || !work->element || !work->first || !work->piece ||
-        !work->queue)
+    if (!work->next_copy || !work->cone_of || !work->element || !work->first || !work->piece || !work->queue)
         return error_memory(error);
     for (size_t v = 0; v < n; v++)
         work->next_copy[v] = work->cone_of[v] = -1;

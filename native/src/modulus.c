@@ -2,8 +2,9 @@
 #include "modulus.h"
 
 #include <math.h>
+#include <stddef.h>
 
-#include "distortion.h"
+#include "lattice.h"
 
 static const double longest_tile = 1e7;
 static const double same_direction = 1e-9;
@@ -56,16 +57,14 @@ static linear least_conformal(const double covariance[3], double area, int modul
     return map;
 }
 
-void modulus_choose(orb_embedding *embedding) {
+void modulus_choose(orb_embedding *embedding, const double covariance[3]) {
     orb_tile *tile = embedding->tile;
     orb_copies *copies = embedding->copies;
     const orb_geometry *geometry = tile->geometry;
-    double covariance[3];
     double complex axis = 1;
     embedding->report.n_moduli = count_moduli(tile, &axis);
     if (embedding->report.n_moduli == 0)
         return;
-    distortion_covariance(embedding, covariance);
     linear map = least_conformal(covariance, tile->area, embedding->report.n_moduli, axis);
     for (int32_t s = 0; s < tile->word->n_sides; s++)
         tile->corners[s] = deformed(map, tile->corners[s]);
@@ -80,4 +79,16 @@ void modulus_choose(orb_embedding *embedding) {
         copies->isometries[i] = deformed_isometry(geometry, map, copies->isometries[i]);
     for (int32_t v = 0; v < embedding->mesh->n_vertices; v++)
         embedding->position[v] = deformed(map, embedding->position[v]);
+}
+
+void modulus_report(orb_embedding *embedding) {
+    double complex basis[2], axis;
+    int rotations;
+    double *modulus = embedding->report.modulus;
+    modulus[0] = modulus[1] = 0;
+    if (!geometry_has_translations(embedding->tile->geometry) ||
+        lattice_create(embedding->tile, basis, &rotations, &axis, NULL) != ORB_OK)
+        return;
+    modulus[0] = creal(basis[1] / basis[0]);
+    modulus[1] = cimag(basis[1] / basis[0]);
 }

@@ -10,7 +10,11 @@
 #include "embedding.h"
 
 /* Deforms tile, isometries of the copies and positions alike, keeping the tile's area; sets report.n_moduli, the real
- * dimensions of the family. The copies must be placed, and must be placed anew afterwards where that is not 0. */
-void modulus_choose(orb_embedding *embedding);
+ * dimensions of the family. The copies must be placed, and must be placed anew afterwards where that is not 0.
+ * `covariance`: sum of area J J', J the maps of the triangles: [m11, m12, m22]. */
+void modulus_choose(orb_embedding *embedding, const double covariance[3]);
+
+/* The shape of the lattice of translations: report.modulus, 0 where there is none. */
+void modulus_report(orb_embedding *embedding);
 
 #endif

@@ -63,18 +63,20 @@ typedef struct corner {
 
 static int by_place(const void *a, const void *b) { return ascending(a, b); }
 
-static orb_status error_count(const orb_signature *s, int32_t n_cones, int32_t n_corners, int32_t first_cone,
+/* `odd`: a pick of the kind of which there are too many. */
+static orb_status error_count(const orb_signature *s, int32_t n_cones, int32_t n_corners, int32_t odd,
                               orb_error *error) {
     int32_t picked = n_cones + n_corners, wanted = s->n_cones + s->n_corners;
+    bool inside = n_cones > s->n_cones;
     if (picked != wanted)
         return error_set(error, ORB_CONE_COUNT, "%s has %d %s but %d vertices were picked", s->text, (int)wanted,
                          s->n_corners ? "cones and corners" : "cones", (int)picked);
-    return error_set_elements(error, ORB_BAD_CONE, ORB_VERTEX, &first_cone, 1, 1,
-                              "%s has %d cones inside and %d corners on mirrors, but %d of the picked vertices are "
-                              "inside and %d on the boundary, vertex %d among those %s: pick it %s",
-                              s->text, (int)s->n_cones, (int)s->n_corners, (int)n_cones, (int)n_corners,
-                              (int)first_cone, n_cones > s->n_cones ? "inside" : "on the boundary",
-                              n_cones > s->n_cones ? "on the boundary" : "inside");
+    return error_set_elements(error, ORB_BAD_CONE, ORB_VERTEX, &odd, 1, 1,
+                              "%s has %d %s inside and %d %s on mirrors, but %d of the picked vertices are inside and "
+                              "%d on the boundary: pick another one %s for vertex %d",
+                              s->text, (int)s->n_cones, s->n_cones == 1 ? "cone" : "cones", (int)s->n_corners,
+                              s->n_corners == 1 ? "corner" : "corners", (int)n_cones, (int)n_corners,
+                              inside ? "on the boundary" : "inside", (int)odd);
 }
 
 /* The corners of each loop against the signature's mirrors. `room` [n + n_mirrors]. */
@@ -103,10 +105,11 @@ static orb_status match_loops(const orb_signature *s, const orb_boundary *bounda
 static orb_status match(const orb_signature *s, const orb_boundary *boundary, int32_t n, const int32_t *vertex,
                         const int32_t *given, int32_t *order, const bool *mirror, corner *corners, int32_t *room,
                         orb_error *error) {
-    int32_t n_cones = 0, n_corners = 0, first[2] = {-1, -1};
+    int32_t n_cones = 0, n_corners = 0, odd[2] = {-1, -1}; /* of each kind the last one out of place */
     for (int32_t i = 0; i < n; i++) {
-        if (first[mirror[i]] < 0)
-            first[mirror[i]] = vertex[i];
+        bool in_place = mirror[i] == (i >= s->n_cones);
+        if (!in_place || odd[mirror[i]] < 0)
+            odd[mirror[i]] = vertex[i];
         int32_t number = mirror[i] ? s->n_cones + n_corners : n_cones;
         if (mirror[i])
             corners[n_corners++] = (corner){boundary->place[vertex[i]], i};
@@ -115,7 +118,7 @@ static orb_status match(const orb_signature *s, const orb_boundary *boundary, in
         order[i] = given ? given[i] : number < s->n_cones + s->n_corners ? s->orders[number] : 0;
     }
     if (n_cones != s->n_cones || n_corners != s->n_corners)
-        return error_count(s, n_cones, n_corners, first[n_cones <= s->n_cones], error);
+        return error_count(s, n_cones, n_corners, odd[n_cones <= s->n_cones], error);
     int32_t *cones = room + n + s->n_mirrors, filled = 0;
     for (int32_t i = 0; i < n; i++)
         if (!mirror[i])
@@ -143,4 +146,45 @@ orb_status picks_match(const orb_signature *signature, const orb_boundary *bound
     free(corners);
     free(room);
     return status;
+}
+
+/* --- a fixed boundary --- */
+
+orb_status picks_spread(const orb_mesh *mesh, const orb_boundary *boundary, int32_t loop, int32_t count,
+                        int32_t *vertex, orb_error *error) {
+    int32_t begin = boundary->start[loop], n = boundary->start[loop + 1] - begin, chosen = 0;
+    if (n < count)
+        return error_set(error, ORB_CONE_COUNT, "the polygon has %d corners but the boundary only %d vertices",
+                         (int)count, (int)n);
+    double along = 0, total = boundary_length(mesh, boundary, loop);
+    for (int32_t i = 0; i < n && chosen < count; i++) { /* not so late that too few vertices are left */
+        if (!(along < total * chosen / count) || n - i == count - chosen)
+            vertex[chosen++] = boundary->vertex[begin + i];
+        along += mesh_edge_length(mesh, boundary->halfedge[begin + i]);
+    }
+    return ORB_OK;
+}
+
+/* Whether the picks follow one another along the boundary: 1, -1: in the other direction, 0: neither. */
+static int direction_of(const orb_boundary *boundary, int32_t n, const int32_t *picks) {
+    int32_t rises = 0;
+    for (int32_t i = 0; i < n; i++)
+        rises += boundary->place[picks[(i + 1) % n]] > boundary->place[picks[i]];
+    return rises == n - 1 ? 1 : rises == 1 ? -1 : 0;
+}
+
+orb_status picks_follow(const orb_boundary *boundary, int32_t loop, int32_t n, const int32_t *picks, bool *clockwise,
+                        orb_error *error) {
+    for (int32_t i = 0; i < n; i++)
+        if (boundary_loop_of(boundary, picks[i]) != loop)
+            return error_set_elements(error, ORB_BAD_CONE, ORB_VERTEX, &picks[i], 1, 1,
+                                      "vertex %d is not on the boundary that goes to the polygon: pick corners there",
+                                      (int)picks[i]);
+    int direction = direction_of(boundary, n, picks);
+    *clockwise = direction < 0;
+    if (direction == 0)
+        return error_set_elements(error, ORB_BAD_CONE, ORB_VERTEX, picks, n, n,
+                                  "the %d corners do not follow one another round the boundary: pick them in turn",
+                                  (int)n);
+    return ORB_OK;
 }

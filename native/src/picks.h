@@ -15,4 +15,11 @@ orb_status picks_check(const orb_mesh *mesh, int32_t n, const int32_t *vertex, o
 orb_status picks_match(const orb_signature *signature, const orb_boundary *boundary, const bool *filled, int32_t n,
                        const int32_t *vertex, const int32_t *given, int32_t *order, bool *mirror, orb_error *error);
 
+/* For a fixed polygon: `count` vertices at equal distances along a loop; or whether the n picks follow one another round
+ * it, and *clockwise: against its sequence. Errors: ORB_CONE_COUNT (too few vertices), ORB_BAD_CONE. */
+orb_status picks_spread(const orb_mesh *mesh, const orb_boundary *boundary, int32_t loop, int32_t count,
+                        int32_t *vertex, orb_error *error);
+orb_status picks_follow(const orb_boundary *boundary, int32_t loop, int32_t n, const int32_t *picks, bool *clockwise,
+                        orb_error *error);
+
 #endif

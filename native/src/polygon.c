@@ -23,8 +23,9 @@ static orb_status place_regular(const orb_polygon *polygon, orb_point *corners, 
     int32_t n = polygon->n_corners;
     double radius = polygon->radius;
     if (!(radius >= 0) || !isfinite(radius) || (polygon->curvature > 0 && !(radius < pi / 2)))
-        return error_set(error, ORB_BAD_ARGUMENT, "the polygon's radius is %g: make it positive%s, or 0 for the default",
-                         radius, polygon->curvature > 0 ? " and less than pi / 2" : "");
+        return error_set(error, ORB_BAD_ARGUMENT,
+                         "the polygon's radius is %g: make it positive%s, or 0 for the default", radius,
+                         polygon->curvature > 0 ? " and less than pi / 2" : "");
     if (radius == 0)
         radius = default_radius(polygon->curvature, n);
     const orb_geometry *geometry = geometry_of_curvature(polygon->curvature);
@@ -41,8 +42,9 @@ static orb_status place_given(const orb_polygon *polygon, orb_point *corners, or
         double K = polygon->curvature, size = x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
         double off = K == 0 ? x[2] - 1 : x[0] * x[0] + x[1] * x[1] + K * x[2] * x[2] - K;
         if (!(fabs(off) < off_model * (1 + size)) || (K < 0 && !(x[2] > 0)))
-            return refuse(error, i, "is not a point of the geometry's model: give (x, y, 1), a unit vector, or "
-                                    "x x + y y - z z = -1 with z > 0");
+            return refuse(error, i,
+                          "is not a point of the geometry's model: give (x, y, 1), a unit vector, or "
+                          "x x + y y - z z = -1 with z > 0");
         if (K > 0 && !(x[2] > 0))
             return refuse(error, i, "is not in the upper hemisphere: turn or shrink the polygon");
         corners[i] = point_of(K == 0 ? CMPLX(x[0], x[1]) / 2 : CMPLX(x[0], x[1]) / (1 + x[2]));
@@ -64,8 +66,9 @@ static orb_status require_convex(int curvature, int32_t n, const orb_point *corn
                 return refuse(error, (i + k) % n,
                               "is not to the left of every side: give a strictly convex polygon, counter-clockwise");
         if (curvature > 0 && !turns_left(geometry, p, q, point_of(0)))
-            return refuse(error, i, "starts a side that does not have (0, 0, 1) on its left: turn the polygon so that "
-                                    "this point is inside");
+            return refuse(error, i,
+                          "starts a side that does not have (0, 0, 1) on its left: turn the polygon so that "
+                          "this point is inside");
     }
     return ORB_OK;
 }

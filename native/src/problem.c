@@ -14,8 +14,7 @@ static void list_edges(orb_problem *problem, const orb_mesh *mesh) {
         problem->edges[2 * e + 1] = problem->copies->triangles[halfedge_next(h)];
     }
     for (int32_t u = 0; u < problem->copies->n_copies; u++)
-        problem->reflects =
-            problem->reflects || problem->copies->isometries[problem->copies->isometry[u]].reflects;
+        problem->reflects = problem->reflects || problem->copies->isometries[problem->copies->isometry[u]].reflects;
 }
 
 static void slide(orb_problem *problem, int32_t vertex, int32_t line) {
@@ -112,8 +111,7 @@ static void hold_translations(orb_problem *problem, const orb_disk *disk, const 
     }
     orb_point at = tile->corners[tile->word->first[tile->word->node[0]]];
     orb_point across = geometry_exp(problem->geometry, at, CMPLX(0, 1) * direction);
-    problem->lines[tile->word->n_sides] =
-        isometry_pairing(problem->geometry, point_of(0), point_of(0.5), at, across);
+    problem->lines[tile->word->n_sides] = isometry_pairing(problem->geometry, point_of(0), point_of(0.5), at, across);
     slide(problem, base, tile->word->n_sides);
 }
 
@@ -140,8 +138,8 @@ static void hold_rotation(orb_problem *problem, const orb_mesh *mesh, const orb_
 
 void problem_aim(orb_problem *problem, const orb_point *position) {
     if (problem->held >= 0)
-        problem->lines[problem->line[problem->held]] = isometry_pairing(
-            problem->geometry, point_of(0), point_of(0.5), problem->axis, position[problem->held]);
+        problem->lines[problem->line[problem->held]] =
+            isometry_pairing(problem->geometry, point_of(0), point_of(0.5), problem->axis, position[problem->held]);
 }
 
 orb_status problem_create(const orb_mesh *mesh, const orb_copies *copies, const orb_disk *disk, const orb_tile *tile,
@@ -227,6 +225,17 @@ static double complex along_freedom(const orb_problem *problem, int32_t v, orb_p
         return problem->freedom[v] ? g : 0;
     double complex direction = problem_direction(problem, v, position);
     return creal(g * conj(direction)) * direction;
+}
+
+void problem_covariance(const orb_problem *problem, const orb_point *placed, double covariance[3]) {
+    covariance[0] = covariance[1] = covariance[2] = 0;
+    for (int32_t e = 0; e < problem->n_edges; e++) {
+        double complex d =
+            geometry_log(problem->geometry, placed[problem->edges[2 * e]], placed[problem->edges[2 * e + 1]]);
+        covariance[0] += problem->weights[e] * creal(d) * creal(d);
+        covariance[1] += problem->weights[e] * creal(d) * cimag(d);
+        covariance[2] += problem->weights[e] * cimag(d) * cimag(d);
+    }
 }
 
 double problem_energy(const orb_problem *problem, const orb_point *placed, const double complex *turn,

@@ -50,6 +50,9 @@ double complex problem_pull(const orb_problem *problem, int32_t u, double comple
 double problem_energy(const orb_problem *problem, const orb_point *placed, const double complex *turn,
                       const orb_point *position, double complex *gradient, double *scale, double *relative);
 
+/* Sum over the edges of w (q - p) (q - p)', [m11, m12, m22], in the plane's usual coordinates. */
+void problem_covariance(const orb_problem *problem, const orb_point *placed, double covariance[3]);
+
 /* The direction that a vertex of freedom 1 may move in, and the point of its line that is nearest. */
 double complex problem_direction(const orb_problem *problem, int32_t vertex, orb_point position);
 orb_point problem_onto_line(const orb_problem *problem, int32_t vertex, orb_point position);

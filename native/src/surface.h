@@ -30,6 +30,11 @@ orb_status surface_create(const orb_mesh_arrays *arrays, const orb_request *requ
                           orb_surface **surface, orb_error *error);
 void surface_free(orb_surface *surface);
 
+/* The request's own weights for surface->mesh: weights[n_edges]. Error: weights_compute's, and ORB_BAD_ARGUMENT where
+ * holes were closed. */
+orb_status surface_given_weights(const orb_surface *surface, const orb_request *request, double *weights,
+                                 orb_error *error);
+
 static inline orb_marks surface_marks(const orb_surface *surface) {
     return (orb_marks){surface->n_marks, surface->vertex, surface->order};
 }

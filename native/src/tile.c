@@ -53,8 +53,8 @@ static double inscribed_circle(int K, int32_t n, const double *half, int images)
 
 /* Corners counter-clockwise about the origin, the inscribed circle's centre, after the tangent point in direction
  * -pi / 2. `touch` [n]: the tangent points of the sides that start in the corners. Returns tan_K(r / 2). */
-static double place_corners(const orb_geometry *geometry, int32_t n, const double *half, int images,
-                            orb_point *corners, orb_point *touch) {
+static double place_corners(const orb_geometry *geometry, int32_t n, const double *half, int images, orb_point *corners,
+                            orb_point *touch) {
     int K = geometry_curvature(geometry);
     double s = inscribed_circle(K, n, half, images), cos_r = sqrt(1 - K * s), sin_r = sqrt(s);
     double half_r = sin_r / (1 + cos_r), direction = -pi / 2;
@@ -107,8 +107,7 @@ static void glue_sides(orb_tile *tile, const orb_point *touch) {
             q = touch[s];
             q1 = touch[partner];
         }
-        tile->pairings[s] =
-            (word->same_way[s] ? isometry_reflection : isometry_pairing)(geometry, p, q, p1, q1);
+        tile->pairings[s] = (word->same_way[s] ? isometry_reflection : isometry_pairing)(geometry, p, q, p1, q1);
         tile->lines[s] = isometry_pairing(geometry, point_of(0), point_of(0.5), p, q);
     }
 }
@@ -128,8 +127,7 @@ static void find_elements(orb_tile *tile, int32_t *queue, bool *known) {
         for (int k = 0; k < 2; k++) {
             if (word_is_mirror(word, side[k]) || known[to[k]])
                 continue;
-            tile->elements[to[k]] =
-                isometry_compose(tile->geometry, tile->pairings[side[k]], tile->elements[c]);
+            tile->elements[to[k]] = isometry_compose(tile->geometry, tile->pairings[side[k]], tile->elements[c]);
             known[to[k]] = true;
             queue[tail++] = to[k];
         }

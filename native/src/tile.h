@@ -10,13 +10,13 @@
 typedef struct orb_tile {
     const orb_geometry *geometry;
     orb_word *word;
-    orb_point *corners;      /* [n_sides] */
-    double complex *sides;   /* [n_sides] the vector along side s, at corner s */
-    orb_isometry *pairings;  /* [n_sides] */
-    orb_isometry *lines;     /* [n_sides] takes the real axis to the geodesic of side s, the origin to corner s */
-    orb_isometry *elements;  /* [n_sides] corner s is this element's image of its node's first corner */
-    double area;             /* 2 pi |chi| (Gauss and Bonnet), 1 in the plane; of a fixed polygon its own */
-    bool fixed;              /* a polygon whose boundary does not move, no orbifold's tile */
+    orb_point *corners;     /* [n_sides] */
+    double complex *sides;  /* [n_sides] the vector along side s, at corner s */
+    orb_isometry *pairings; /* [n_sides] */
+    orb_isometry *lines;    /* [n_sides] takes the real axis to the geodesic of side s, the origin to corner s */
+    orb_isometry *elements; /* [n_sides] corner s is this element's image of its node's first corner */
+    double area;            /* 2 pi |chi| (Gauss and Bonnet), 1 in the plane; of a fixed polygon its own */
+    bool fixed;             /* a polygon whose boundary does not move, no orbifold's tile */
 } orb_tile;
 
 /* The polygon with the word's angles that has an inscribed circle, about the origin; a sphere cut along a path gets
