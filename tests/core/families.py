@@ -4,7 +4,7 @@
 import functools
 
 import numpy as np
-import surfaces
+import shapes
 from conway import features
 from meshes import far_apart, icosphere, shared_file
 from picks import inside
@@ -40,41 +40,41 @@ def ellipsoid():
 
 def sphere_with(crosscaps=0, holes=0):
     vertices, triangles = icosphere(3)
-    surface = surfaces.with_crosscaps(vertices, triangles, far_apart(vertices, triangles, 6)[:crosscaps])
-    return surfaces.punctured(*surface, inside(*surface, holes), 2) if holes else surface
+    surface = shapes.with_crosscaps(vertices, triangles, far_apart(vertices, triangles, 6)[:crosscaps])
+    return shapes.punctured(*surface, inside(*surface, holes), 2) if holes else surface
 
 
 def holed(surface, holes):
-    return surfaces.punctured(*surface, inside(*surface, holes), 2)
+    return shapes.punctured(*surface, inside(*surface, holes), 2)
 
 
 # (handles, cross-caps, boundaries): {name: how to make it}; a name with an ending is a file of ../shared/meshes
 MESHES = {
     (0, 0, 0): {"ellipsoid": ellipsoid, "spot.obj": None},
     (0, 0, 1): {
-        **{"disk": surfaces.disk, "hemisphere.obj": None, "plate": lambda: surfaces.plate(0, 5), "lion.off": None},
-        **{"cap": surfaces.hemisphere, "camelhead.off": None},
+        **{"disk": shapes.disk, "hemisphere.obj": None, "plate": lambda: shapes.plate(0, 5), "lion.off": None},
+        **{"cap": shapes.hemisphere, "camelhead.off": None},
     },
-    (0, 0, 2): {"annulus": surfaces.annulus, "cylinder": surfaces.cylinder, "plate": lambda: surfaces.plate(1)},
-    (0, 0, 3): {"plate": lambda: surfaces.plate(2), "halftunnel.off": None},
-    (0, 1, 0): {"boy": surfaces.boy_surface, "crosscap": lambda: sphere_with(1)},
+    (0, 0, 2): {"annulus": shapes.annulus, "cylinder": shapes.cylinder, "plate": lambda: shapes.plate(1)},
+    (0, 0, 3): {"plate": lambda: shapes.plate(2), "halftunnel.off": None},
+    (0, 1, 0): {"boy": shapes.boy_surface, "crosscap": lambda: sphere_with(1)},
     (0, 1, 1): {
-        **{"moebius": surfaces.moebius_band, "three twists": lambda: surfaces.moebius_band(40, 6, twists=3)},
+        **{"moebius": shapes.moebius_band, "three twists": lambda: shapes.moebius_band(40, 6, twists=3)},
         "crosscap": lambda: sphere_with(1, 1),
     },
-    (0, 1, 2): {"moebius": lambda: holed(surfaces.moebius_band(36, 12, 1.2), 1), "crosscap": lambda: sphere_with(1, 2)},
-    (0, 2, 0): {"figure eight": surfaces.klein_figure_eight, "bottle": surfaces.klein_bottle},
-    (0, 2, 1): {"bottle": lambda: holed(surfaces.klein_bottle(), 1), "crosscaps": lambda: sphere_with(2, 1)},
+    (0, 1, 2): {"moebius": lambda: holed(shapes.moebius_band(36, 12, 1.2), 1), "crosscap": lambda: sphere_with(1, 2)},
+    (0, 2, 0): {"figure eight": shapes.klein_figure_eight, "bottle": shapes.klein_bottle},
+    (0, 2, 1): {"bottle": lambda: holed(shapes.klein_bottle(), 1), "crosscaps": lambda: sphere_with(2, 1)},
     (0, 3, 0): {
         "crosscaps": lambda: sphere_with(3),
-        "torus": lambda: surfaces.with_crosscaps(*surfaces.torus(30, 16), [0]),
+        "torus": lambda: shapes.with_crosscaps(*shapes.torus(30, 16), [0]),
     },
-    (1, 0, 0): {"torus": surfaces.torus, "block": lambda: surfaces.pretzel(1), "kitten.obj": None},
-    (1, 0, 1): {"torus": lambda: holed(surfaces.torus(), 1), "block": lambda: holed(surfaces.pretzel(1), 1)},
-    (1, 0, 2): {"torus": lambda: holed(surfaces.torus(), 2), "block": lambda: holed(surfaces.pretzel(1, 3), 2)},
-    (2, 0, 0): {"block": lambda: surfaces.pretzel(2), "fine block": lambda: surfaces.pretzel(2, 3)},
-    (2, 0, 1): {"block": lambda: holed(surfaces.pretzel(2, 3), 1), "long": lambda: holed(surfaces.pretzel(2), 1)},
-    (3, 0, 0): {"block": lambda: surfaces.pretzel(3), "three_holes.off": None},
+    (1, 0, 0): {"torus": shapes.torus, "block": lambda: shapes.pretzel(1), "kitten.obj": None},
+    (1, 0, 1): {"torus": lambda: holed(shapes.torus(), 1), "block": lambda: holed(shapes.pretzel(1), 1)},
+    (1, 0, 2): {"torus": lambda: holed(shapes.torus(), 2), "block": lambda: holed(shapes.pretzel(1, 3), 2)},
+    (2, 0, 0): {"block": lambda: shapes.pretzel(2), "fine block": lambda: shapes.pretzel(2, 3)},
+    (2, 0, 1): {"block": lambda: holed(shapes.pretzel(2, 3), 1), "long": lambda: holed(shapes.pretzel(2), 1)},
+    (3, 0, 0): {"block": lambda: shapes.pretzel(3), "three_holes.off": None},
 }
 
 
@@ -82,7 +82,7 @@ MESHES = {
 def mesh_named(topology, name):
     """(vertices, triangles); the test is skipped by name where the file is not there."""
     make = MESHES[topology][name]
-    return surfaces.roughened(make(), seed=len(name)) if make else core.read_mesh(shared_file("meshes", name))
+    return shapes.roughened(make(), seed=len(name)) if make else core.read_mesh(shared_file("meshes", name))
 
 
 def cases(signatures):

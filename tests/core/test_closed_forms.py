@@ -7,7 +7,7 @@ import pytest
 from conway import features
 from flat import HEIGHT, flat_surface, subdivided_triangle, weights_of
 from meshes import icosphere
-from surfaces import antipodal_quotient, hemisphere
+from shapes import antipodal_quotient, hemisphere
 
 import core
 

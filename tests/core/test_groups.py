@@ -5,13 +5,12 @@ are the seventeen wallpaper groups, hyperbolic tiles have the area -2 pi chi and
 import numpy as np
 import pytest
 from conway import features
-from families import EUCLIDEAN, HYPERBOLIC, MESHES, SPHERICAL
+from families import EUCLIDEAN, HYPERBOLIC, MESHES, SPHERICAL, mesh_named
 from isometries import generated, times_covered, wallpaper
 from judged import judge_module, model_points
 from meshes import CHECK_LAYOUT
 from picks import picks_for
-from surfaces import boy_surface, disk, roughened
-from test_orbifolds import mesh_named
+from shapes import boy_surface, disk, roughened
 
 import core
 

@@ -4,16 +4,16 @@ elements are named."""
 
 import numpy as np
 import pytest
-import surfaces
+import shapes
 from conway import features
 from families import mesh_named
 from picks import along, boundary_loops, inside, picks_for
 
 import core
 
-DISK = surfaces.roughened(surfaces.disk())
+DISK = shapes.roughened(shapes.disk())
 RIM = boundary_loops(DISK[1])[0]
-ANNULUS = surfaces.roughened(surfaces.annulus())
+ANNULUS = shapes.roughened(shapes.annulus())
 
 
 def energy(mesh, signature, cones, **options):
@@ -59,7 +59,7 @@ def test_mirrors_in_any_sequence():
 
 
 def test_a_moebius_band_has_no_direction():
-    mesh = surfaces.roughened(surfaces.moebius_band())
+    mesh = shapes.roughened(shapes.moebius_band())
     corners = along(mesh[0], boundary_loops(mesh[1])[0], 3)
     plain = energy(mesh, "*234x", corners)
     assert energy(mesh, "*432x", corners[::-1]) == pytest.approx(plain, rel=1e-9)

@@ -4,7 +4,7 @@ hyperbolic plane, and any positive weights inside: no triangle is flipped."""
 
 import numpy as np
 import pytest
-import surfaces
+import shapes
 from judged import harmonic_residual, judge_module, model_points
 from meshes import CHECK_LAYOUT, shared_file
 from picks import along, boundary_loops
@@ -14,16 +14,16 @@ import core
 GEOMETRIES = ["spherical", "euclidean", "hyperbolic"]
 CURVATURE = {"spherical": 1, "euclidean": 0, "hyperbolic": -1}
 MESHES = {
-    "disk": lambda: surfaces.roughened(surfaces.disk(), flips=0),
-    "cap": lambda: surfaces.roughened(surfaces.hemisphere(), seed=5, flips=0),
-    "with chords": lambda: surfaces.roughened(surfaces.plate(0, 5), seed=4, flips=0.3),
+    "disk": lambda: shapes.roughened(shapes.disk(), flips=0),
+    "cap": lambda: shapes.roughened(shapes.hemisphere(), seed=5, flips=0),
+    "with chords": lambda: shapes.roughened(shapes.plate(0, 5), seed=4, flips=0.3),
 }
 pytestmark = pytest.mark.skipif(not CHECK_LAYOUT.is_file(), reason="../shared/tools/check_layout.py is not there")
 
 
 def random_weights(triangles, seed):
     """From a thousandth to a thousand."""
-    edges = surfaces.edges_of(triangles)
+    edges = shapes.edges_of(triangles)
     return np.column_stack([edges, 10.0 ** np.random.default_rng(seed).uniform(-3, 3, len(edges))])
 
 
@@ -171,6 +171,6 @@ def test_refusals():
     assert failure(disk, [], off).status == "ORB_BAD_ARGUMENT"
     error = failure(disk, [0, *along(disk[0], boundary_loops(disk[1])[0], 2)], core.Polygon("euclidean"))
     assert (error.status, error.element, error.elements) == ("ORB_BAD_CONE", "vertex", [0])
-    assert failure(surfaces.annulus(), [], core.Polygon("euclidean")).status == "ORB_BOUNDARY"
-    assert failure(surfaces.moebius_band(), [], core.Polygon("euclidean")).status == "ORB_WRONG_GENUS"
-    assert failure(surfaces.torus(), [], core.Polygon("euclidean")).status in ("ORB_BOUNDARY", "ORB_WRONG_GENUS")
+    assert failure(shapes.annulus(), [], core.Polygon("euclidean")).status == "ORB_BOUNDARY"
+    assert failure(shapes.moebius_band(), [], core.Polygon("euclidean")).status == "ORB_WRONG_GENUS"
+    assert failure(shapes.torus(), [], core.Polygon("euclidean")).status in ("ORB_BOUNDARY", "ORB_WRONG_GENUS")

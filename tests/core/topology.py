@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from picks import boundary_loops
-from surfaces import edges_of
+from shapes import edges_of
 
 
 @dataclass(frozen=True)

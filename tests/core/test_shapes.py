@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-import surfaces
+import shapes
 from meshes import far_apart, icosphere
 from picks import along, boundary_loops, inside
 from topology import topology_of
@@ -12,32 +12,32 @@ from topology import topology_of
 def crosscaps(n, holes=0):
     vertices, triangles = icosphere(3)
     places = far_apart(vertices, triangles, n + holes)
-    surface = surfaces.with_crosscaps(vertices, triangles, places[:n])
-    return surfaces.punctured(*surface, inside(*surface, holes)) if holes else surface
+    surface = shapes.with_crosscaps(vertices, triangles, places[:n])
+    return shapes.punctured(*surface, inside(*surface, holes)) if holes else surface
 
 
 MADE = {  # name: (mesh, Euler characteristic, boundary loops, orientable)
-    "annulus": (surfaces.annulus, 0, 2, True),
-    "cylinder": (surfaces.cylinder, 0, 2, True),
-    "moebius": (surfaces.moebius_band, 0, 1, False),
-    "moebius of three": (lambda: surfaces.moebius_band(twists=3), 0, 1, False),
-    "figure eight": (surfaces.klein_figure_eight, 0, 0, False),
-    "bottle": (surfaces.klein_bottle, 0, 0, False),
-    "torus": (surfaces.torus, 0, 0, True),
-    "disk": (surfaces.disk, 1, 1, True),
-    "hemisphere": (surfaces.hemisphere, 1, 1, True),
-    "boy": (surfaces.boy_surface, 1, 0, False),
-    "boy, coarse": (lambda: surfaces.boy_surface(1), 1, 0, False),
-    "pretzel 1": (lambda: surfaces.pretzel(1), 0, 0, True),
-    "pretzel 2": (lambda: surfaces.pretzel(2), -2, 0, True),
-    "pretzel 3": (lambda: surfaces.pretzel(3), -4, 0, True),
-    "plate": (lambda: surfaces.plate(0), 1, 1, True),
-    "plate 1": (lambda: surfaces.plate(1), 0, 2, True),
-    "plate 2": (lambda: surfaces.plate(2), -1, 3, True),
+    "annulus": (shapes.annulus, 0, 2, True),
+    "cylinder": (shapes.cylinder, 0, 2, True),
+    "moebius": (shapes.moebius_band, 0, 1, False),
+    "moebius of three": (lambda: shapes.moebius_band(twists=3), 0, 1, False),
+    "figure eight": (shapes.klein_figure_eight, 0, 0, False),
+    "bottle": (shapes.klein_bottle, 0, 0, False),
+    "torus": (shapes.torus, 0, 0, True),
+    "disk": (shapes.disk, 1, 1, True),
+    "hemisphere": (shapes.hemisphere, 1, 1, True),
+    "boy": (shapes.boy_surface, 1, 0, False),
+    "boy, coarse": (lambda: shapes.boy_surface(1), 1, 0, False),
+    "pretzel 1": (lambda: shapes.pretzel(1), 0, 0, True),
+    "pretzel 2": (lambda: shapes.pretzel(2), -2, 0, True),
+    "pretzel 3": (lambda: shapes.pretzel(3), -4, 0, True),
+    "plate": (lambda: shapes.plate(0), 1, 1, True),
+    "plate 1": (lambda: shapes.plate(1), 0, 2, True),
+    "plate 2": (lambda: shapes.plate(2), -1, 3, True),
     "crosscap": (lambda: crosscaps(1), 1, 0, False),
     "crosscaps": (lambda: crosscaps(3), -1, 0, False),
     "crosscaps, hole": (lambda: crosscaps(2, 1), -1, 1, False),
-    "torus, holes": (lambda: surfaces.punctured(*surfaces.torus(), [0, 95], 2), -2, 2, True),
+    "torus, holes": (lambda: shapes.punctured(*shapes.torus(), [0, 95], 2), -2, 2, True),
 }
 
 
@@ -45,7 +45,7 @@ MADE = {  # name: (mesh, Euler characteristic, boundary loops, orientable)
 @pytest.mark.parametrize("name", MADE)
 def test_surface_is_what_it_should_be(name, rough):
     make, euler, loops, orientable = MADE[name]
-    vertices, triangles = surfaces.roughened(make()) if rough else make()
+    vertices, triangles = shapes.roughened(make()) if rough else make()
     found = topology_of(triangles)
     assert (found.euler, found.loops, found.orientable, found.oriented) == (euler, loops, orientable, orientable)
     corners = vertices[triangles]
@@ -56,7 +56,7 @@ def test_surface_is_what_it_should_be(name, rough):
 
 def test_solids_are_oriented_outwards():
     for genus in (1, 2):
-        a, b, c = np.moveaxis(np.array(surfaces.pretzel(genus)[0])[surfaces.pretzel(genus)[1]], 1, 0)
+        a, b, c = np.moveaxis(np.array(shapes.pretzel(genus)[0])[shapes.pretzel(genus)[1]], 1, 0)
         assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6 > genus
 
 

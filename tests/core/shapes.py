@@ -2,7 +2,7 @@
 """Surfaces of every topology that an orbifold may have, made by the tests: vertices (n, 3), triangles (m, 3).
 
 Orientable ones are consistently oriented. `roughened` makes a mesh generic: its vertices moved and its edges flipped at
-random, so that no symmetry hides a mistake. What is made here is checked by test_surfaces.py."""
+random, so that no symmetry hides a mistake. What is made here is checked by test_shapes.py."""
 
 import numpy as np
 from meshes import icosphere
