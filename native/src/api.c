@@ -10,11 +10,13 @@
 #include "modulus.h"
 #include "monitor.h"
 #include "newton.h"
+#include "polygon.h"
 #include "weights.h"
 
 /* What is needed on the way and not afterwards. */
 typedef struct workshop {
     const orb_request *request;
+    const uint8_t *halve; /* chords to halve, or NULL: all */
     orb_embedding *embedding;
     orb_disk *disk;
     orb_problem *problem;
@@ -27,71 +29,81 @@ const char *orb_version(void) { return "0.1.0"; }
 
 orb_request orb_request_default(void) { return (orb_request){.weights = ORB_WEIGHTS_COTANGENT, .clamp = 0.01}; }
 
-/* Signature, orders and mesh: everything that can be wrong before any work is done. */
-static orb_status read_input(workshop *work, const orb_mesh_arrays *arrays, int32_t *orders, orb_error *error) {
+/* Mesh, signature and picks: everything that can be wrong before any work is done. */
+static orb_status read_input(workshop *work, const orb_mesh_arrays *arrays, orb_error *error) {
     orb_embedding *embedding = work->embedding;
-    const orb_request *request = work->request;
-    orb_status status = signature_parse(request->signature, &embedding->signature, error);
-    if (status == ORB_OK)
-        status = signature_match(embedding->signature, request->n_cones, request->orders, orders, error);
-    if (status == ORB_OK)
-        status = mesh_create(arrays, &embedding->mesh, error);
-    if (status == ORB_OK)
-        status = mesh_require_sphere(embedding->mesh, error);
+    orb_status status = surface_create(arrays, work->request, work->halve, &embedding->surface, error);
     if (status != ORB_OK)
         return status;
-    embedding->cones = malloc((size_t)request->n_cones * sizeof *embedding->cones);
+    embedding->mesh = embedding->surface->mesh;
+    embedding->report = embedding->surface->about;
     embedding->weights = malloc(((size_t)embedding->mesh->n_edges + 1) * sizeof *embedding->weights);
-    if (!embedding->cones || !embedding->weights)
+    if (!embedding->weights)
         return error_memory(error);
-    memcpy(embedding->cones, request->cones, (size_t)request->n_cones * sizeof *embedding->cones);
-    return weights_compute(embedding->mesh, request, embedding->weights, &embedding->report.clamped_weights, error);
+    return weights_compute(embedding->mesh, work->request, embedding->weights, &embedding->report.clamped_weights,
+                           error);
 }
 
-/* The poles of a lune are antipodal: an edge between them would be no one geodesic. */
-static orb_status refuse_edge_between_poles(const orb_embedding *embedding, orb_error *error) {
+/* A sphere with cones is cut along the path in which they were picked, every other surface along a graph. */
+static orb_status cut(workshop *work, orb_error *error) {
+    const orb_surface *surface = work->embedding->surface;
+    const orb_signature *signature = surface->signature;
+    orb_marks marks = surface_marks(surface);
+    if (signature && !signature->n_mirrors && !signature->n_crosscaps && !signature->n_handles)
+        return cut_path(surface->mesh, &marks, &work->disk, error);
+    return cut_surface(surface->mesh, surface->parent, &marks, signature ? -1 : 0, &work->disk, error);
+}
+
+/* Two cones or corners of a lune are antipodal: an edge between them would be no one geodesic. */
+static orb_status refuse_edge_between_poles(const workshop *work, orb_error *error) {
+    const orb_embedding *embedding = work->embedding;
     const orb_mesh *mesh = embedding->mesh;
-    const int32_t *poles = embedding->cones;
-    for (int32_t h = 0; h < 3 * mesh->n_triangles && embedding->tile->rotates; h++)
-        if (halfedge_from(mesh, h) == poles[0] && halfedge_to(mesh, h) == poles[1])
+    const orb_surface *surface = embedding->surface;
+    if (surface->n_marks != 2)
+        return ORB_OK;
+    const int32_t *poles = surface->vertex, *place = work->disk->boundary, *at = work->disk->corner_at;
+    if (work->disk->word->n_sides != 2 || place[at[0]] == place[at[1]])
+        return ORB_OK;
+    for (int32_t e = 0; e < mesh->n_edges; e++) {
+        int32_t h = mesh->edge_halfedge[e], a = halfedge_from(mesh, h), b = halfedge_to(mesh, h);
+        if ((a == poles[0] && b == poles[1]) || (a == poles[1] && b == poles[0]))
             return error_set_elements(error, ORB_BAD_CONE, ORB_VERTEX, poles, 2, 2,
                                       "the cones %d and %d of %s are neighbours, and go to opposite poles: pick cones "
                                       "that share no edge, or subdivide the mesh",
-                                      (int)poles[0], (int)poles[1], embedding->signature->text);
+                                      (int)poles[0], (int)poles[1], surface->signature->text);
+    }
     return ORB_OK;
 }
 
-static orb_status cut_and_glue(workshop *work, const int32_t *orders, orb_error *error) {
+static orb_status cut_and_glue(workshop *work, orb_error *error) {
     orb_embedding *embedding = work->embedding;
     orb_report *report = &embedding->report;
-    int32_t n_cones = work->request->n_cones;
+    const orb_signature *signature = embedding->surface->signature;
     double start = monitor_clock();
-    orb_status status = cut_create(embedding->mesh, n_cones, embedding->cones, &work->disk, error);
+    orb_status status = cut(work, error);
     report->seconds_cut = monitor_clock() - start;
     if (status != ORB_OK)
         return status;
     start = monitor_clock();
-    status = tile_create(embedding->signature->curvature, n_cones, orders, &embedding->tile, error);
+    status = signature ? tile_create(work->disk->word, signature->curvature, &embedding->tile, error)
+                       : polygon_create(work->request->polygon, &embedding->tile, error);
     if (status == ORB_OK)
-        status = refuse_edge_between_poles(embedding, error);
+        status = refuse_edge_between_poles(work, error);
     if (status == ORB_OK)
         status = holonomy_create(embedding->mesh, work->disk, embedding->tile, &embedding->copies, error);
     if (status == ORB_OK)
-        status = problem_create(embedding->mesh, embedding->copies, embedding->tile, embedding->cones,
-                                embedding->weights, &work->problem, error);
+        status = problem_create(embedding->mesh, embedding->copies, work->disk, embedding->tile, embedding->weights,
+                                &work->problem, error);
+    if (status == ORB_OK)
+        report->orbifold_euler = signature ? signature->euler : 0;
     report->seconds_tile = monitor_clock() - start;
     return status;
 }
 
 /* The matrix's pattern and its ordering, which the initial guess shares. */
 static orb_status set_up_system(workshop *work, orb_error *error) {
-    const orb_tile *tile = work->embedding->tile;
     double start = monitor_clock();
-    if (tile->rotates) {
-        int32_t middle = work->disk->copy_vertex[work->disk->boundary[work->disk->corner_at[1] / 2]];
-        problem_hold_rotation(work->problem, middle < work->embedding->mesh->n_vertices ? middle : 0, tile->corners[0]);
-    }
-    orb_status status = system_create(work->problem, true, &work->system, error);
+    orb_status status = system_create(work->problem, problem_is_complex(work->problem), &work->system, error);
     if (status != ORB_OK)
         return status;
     double built = monitor_clock();
@@ -134,13 +146,14 @@ static orb_status find_start(workshop *work, orb_error *error) {
     for (int32_t k = 0; k < system->n_free; k++)
         vertex_order[k] = system->free_vertex[work->order[k]];
     if (geometry_any_start(embedding->tile->geometry)) {
-        initial_cones_only(work->disk, embedding->tile, start);
-        status = ORB_OK;
+        status = initial_boundary(work->disk, embedding->tile, start, error);
     } else {
         status = start_on_disk(work, vertex_order, start, error);
     }
-    if (status == ORB_OK)
+    if (status == ORB_OK) {
         memcpy(embedding->position, start, n * sizeof *start);
+        problem_aim(work->problem, embedding->position);
+    }
 done:
     free(start);
     free(vertex_order);
@@ -153,7 +166,7 @@ static orb_status find_minimum(workshop *work, orb_minimum *minimum, orb_error *
     orb_point *position = work->embedding->position;
     orb_status status =
         newton_minimise(work->problem, work->system, work->order, position, minimum, &work->monitor, error);
-    if (status != ORB_NOT_CONVERGED)
+    if (status != ORB_NOT_CONVERGED || !work->system->is_complex)
         return status;
     system_free(work->system);
     work->system = NULL;
@@ -178,7 +191,8 @@ static orb_status minimise(workshop *work, orb_error *error) {
         return error_memory(error);
     }
     problem_place(work->problem, embedding->position, embedding->placed, turn);
-    if (modulus_choose(embedding))
+    modulus_choose(embedding);
+    if (report->n_moduli > 0)
         problem_place(work->problem, embedding->position, embedding->placed, turn);
     free(turn);
     report->energy = problem_energy(work->problem, embedding->placed, NULL, NULL, NULL, NULL, NULL);
@@ -204,16 +218,16 @@ static orb_status certify(workshop *work, orb_error *error) {
     return status;
 }
 
-static orb_status run_stages(workshop *work, const orb_mesh_arrays *arrays, int32_t *orders, orb_error *error) {
+static orb_status run_stages(workshop *work, const orb_mesh_arrays *arrays, orb_error *error) {
     double start = monitor_clock();
     orb_status status = monitor_report(&work->monitor, "topology", 0, error);
     if (status == ORB_OK)
-        status = read_input(work, arrays, orders, error);
+        status = read_input(work, arrays, error);
     work->embedding->report.seconds_topology = monitor_clock() - start;
     if (status == ORB_OK)
         status = monitor_report(&work->monitor, "cut", 0.05, error);
     if (status == ORB_OK)
-        status = cut_and_glue(work, orders, error);
+        status = cut_and_glue(work, error);
     if (status == ORB_OK)
         status = monitor_report(&work->monitor, "order", 0.1, error);
     if (status == ORB_OK)
@@ -236,6 +250,24 @@ static orb_status run_stages(workshop *work, const orb_mesh_arrays *arrays, int3
     return status;
 }
 
+/* One embedding, with the chords halved that `halve` allows (NULL: all). */
+static orb_status embed_once(const orb_mesh_arrays *mesh, const orb_request *request, const uint8_t *halve,
+                             orb_embedding **result, orb_error *error) {
+    workshop work = {.request = request, .halve = halve, .monitor = {request->progress, request->user, 0}};
+    work.embedding = calloc(1, sizeof *work.embedding);
+    orb_status status = work.embedding ? run_stages(&work, mesh, error) : error_memory(error);
+    free(work.order);
+    system_free(work.system);
+    problem_free(work.problem);
+    disk_free(work.disk);
+    *result = work.embedding;
+    if (status != ORB_OK) {
+        orb_embedding_free(work.embedding);
+        *result = NULL;
+    }
+    return status;
+}
+
 orb_status orb_embed(const orb_mesh_arrays *mesh, const orb_request *request, orb_embedding **result,
                      orb_error *error) {
     if (!result)
@@ -243,21 +275,6 @@ orb_status orb_embed(const orb_mesh_arrays *mesh, const orb_request *request, or
     *result = NULL;
     if (!mesh || !request || request->n_cones < 0 || (request->n_cones > 0 && !request->cones))
         return error_set(error, ORB_BAD_ARGUMENT, "orb_embed needs a mesh, a request and its cones");
-    workshop work = {.request = request, .monitor = {request->progress, request->user, 0}};
-    int32_t *orders = malloc(((size_t)request->n_cones + 1) * sizeof *orders);
-    work.embedding = calloc(1, sizeof *work.embedding);
-    orb_status status = error_memory(error);
-    if (orders && work.embedding)
-        status = run_stages(&work, mesh, orders, error);
-    free(orders);
-    free(work.order);
-    system_free(work.system);
-    problem_free(work.problem);
-    cut_free(work.disk);
-    if (status != ORB_OK) {
-        orb_embedding_free(work.embedding);
-        return status;
-    }
-    *result = work.embedding;
-    return error_set(error, ORB_OK, "%s", "");
+    orb_status status = embed_once(mesh, request, NULL, result, error);
+    return status == ORB_OK ? error_set(error, ORB_OK, "%s", "") : status;
 }

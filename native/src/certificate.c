@@ -75,7 +75,7 @@ static orb_status check_seams(orb_embedding *embedding, orb_error *error) {
     double gap = 0;
     int32_t worst[2] = {0, 0};
     for (int32_t e = 0; e < mesh->n_edges; e++) {
-        int32_t h = mesh->edge_halfedge[e], twin = mesh->twin[h];
+        int32_t h = mesh->edge_halfedge[e], twin = mesh->twin[h] < 0 ? h : mesh->twin[h];
         int32_t ends[2][2] = {{triangles[h], triangles[halfedge_next(h)]},
                               {triangles[halfedge_next(twin)], triangles[twin]}};
         double side[2];
@@ -101,13 +101,26 @@ static orb_status check_seams(orb_embedding *embedding, orb_error *error) {
                               (int)worst[0], (int)worst[1], embedding->report.seam_residual);
 }
 
+/* What a cone's or corner's angles lack to 2 pi, or to pi on the boundary. */
+static double missing_angle(const orb_embedding *embedding, int32_t mark, const bool *border) {
+    double full = border[embedding->surface->vertex[mark]] ? pi : 2 * pi;
+    if (embedding->tile->fixed)
+        return full - tile_angle(embedding->tile, mark);
+    return full - full / embedding->surface->order[mark];
+}
+
 /* Angle sums at the vertices, and the area of all triangles. */
 static orb_status check_angles(orb_embedding *embedding, double *area, orb_error *error) {
     const orb_mesh *mesh = embedding->mesh;
     const orb_geometry *geometry = embedding->tile->geometry;
     double *sum = calloc((size_t)mesh->n_vertices + 1, sizeof *sum);
-    if (!sum)
+    bool *border = malloc((size_t)mesh->n_vertices + 1);
+    if (!sum || !border) {
+        free(sum);
+        free(border);
         return error_memory(error);
+    }
+    mesh_find_boundary(mesh, border);
     for (int32_t t = 0; t < mesh->n_triangles; t++) {
         orb_point corners[3];
         triangle_corners(embedding, t, corners);
@@ -121,15 +134,16 @@ static orb_status check_angles(orb_embedding *embedding, double *area, orb_error
         }
     }
     for (int32_t v = 0; v < mesh->n_vertices; v++)
-        sum[v] -= mesh->vertex_halfedge[v] < 0 ? 0 : 2 * pi;
-    for (int32_t c = 0; c < embedding->tile->n_cones; c++)
-        sum[embedding->cones[c]] += 2 * pi - 2 * pi / embedding->tile->orders[c];
+        sum[v] -= mesh->vertex_halfedge[v] < 0 ? 0 : border[v] ? pi : 2 * pi;
+    for (int32_t k = 0; k < embedding->surface->n_marks; k++)
+        sum[embedding->surface->vertex[k]] += missing_angle(embedding, k, border);
     int32_t worst = 0;
     for (int32_t v = 0; v < mesh->n_vertices; v++)
         if (fabs(sum[v]) > fabs(sum[worst]) || sum[v] != sum[v])
             worst = v;
     embedding->report.angle_residual = fabs(sum[worst]);
     free(sum);
+    free(border);
     if (embedding->report.angle_residual < angle_tolerance)
         return ORB_OK;
     return error_set_elements(
@@ -148,7 +162,7 @@ orb_status certificate_check(orb_embedding *embedding, orb_error *error) {
         status = check_angles(embedding, &area, error);
     if (status != ORB_OK)
         return status;
-    double expected = tile_area(embedding->tile, embedding->signature->euler);
+    double expected = embedding->tile->area;
     embedding->report.area_residual = fabs(area - expected) / expected;
     if (embedding->report.area_residual < area_tolerance)
         return ORB_OK;

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cut_graph.h"
 #include "refine.h"
 #include "shortest.h"
 
@@ -206,113 +207,43 @@ static orb_status find_path(cutter *c, orb_error *error) {
     return ORB_OK;
 }
 
-/* Gives the right bank's copy of path vertex i to the triangles on the right: counter-clockwise round the vertex,
- * those from the edge back along the path up to the edge onwards. (Half-edge h is also the corner that it leaves.) */
-static void disk_open(orb_disk *disk, const cutter *c, int32_t i, int32_t copy) {
+/* The edges of the path; *start: the half-edge that sets out along its left bank. */
+static void mark_path(const cutter *c, uint8_t *cut, int32_t *start) {
     const orb_mesh *mesh = c->mesh;
-    int32_t h = mesh->vertex_halfedge[c->path[i]];
-    while (halfedge_to(mesh, h) != c->path[i - 1])
-        h = mesh->twin[halfedge_previous(h)];
-    while (halfedge_to(mesh, h) != c->path[i + 1]) {
-        disk->triangles[h] = copy;
-        h = mesh->twin[halfedge_previous(h)];
+    for (int32_t i = 0; i + 1 < c->n_path; i++) {
+        int32_t h = mesh->vertex_halfedge[c->path[i]];
+        while (halfedge_to(mesh, h) != c->path[i + 1])
+            h = mesh->twin[halfedge_previous(h)];
+        cut[mesh->edge[h]] = 1;
+        if (i == 0)
+            *start = h;
     }
 }
 
-static bool disk_allocate(orb_disk *disk, const cutter *c) {
-    disk->n_copies = c->mesh->n_vertices + c->n_path - 2;
-    disk->n_boundary = 2 * c->n_path - 2;
-    disk->copy_vertex = malloc((size_t)disk->n_copies * sizeof *disk->copy_vertex);
-    disk->copy_pairing = calloc((size_t)disk->n_copies, sizeof *disk->copy_pairing);
-    disk->triangles = malloc((size_t)c->mesh->n_triangles * 3 * sizeof *disk->triangles);
-    disk->boundary = malloc((size_t)disk->n_boundary * sizeof *disk->boundary);
-    disk->corner_at = malloc((2 * (size_t)c->n_cones - 2) * sizeof *disk->corner_at);
-    return disk->copy_vertex && disk->copy_pairing && disk->triangles && disk->boundary && disk->corner_at;
-}
-
-/* All arrays of the disk, from the path. */
-static void disk_fill(orb_disk *disk, const cutter *c) {
-    const orb_mesh *mesh = c->mesh;
-    for (int32_t v = 0; v < mesh->n_vertices; v++)
-        disk->copy_vertex[v] = v;
-    memcpy(disk->triangles, mesh->triangles, (size_t)mesh->n_triangles * 3 * sizeof *disk->triangles);
-    memcpy(disk->boundary, c->path, (size_t)c->n_path * sizeof *disk->boundary);
-    int32_t segment = 1; /* the one that starts in or before path vertex i */
-    for (int32_t i = 1; i < c->n_path - 1; i++) {
-        int32_t copy = mesh->n_vertices + i - 1;
-        if (i == c->corner[segment])
-            segment++;
-        disk->copy_vertex[copy] = c->path[i];
-        disk->copy_pairing[copy] = segment;
-        disk->boundary[disk->n_boundary - i] = copy;
-        disk_open(disk, c, i, copy);
-    }
-    for (int32_t s = 0; s < c->n_cones; s++)
-        disk->corner_at[s] = c->corner[s];
-    for (int32_t s = 1; s < c->n_cones - 1; s++)
-        disk->corner_at[2 * c->n_cones - 2 - s] = disk->n_boundary - c->corner[s];
-}
-
-static orb_status disk_create(cutter *c, orb_disk **disk, orb_error *error) {
-    orb_disk *made = calloc(1, sizeof *made);
-    if (!made || !disk_allocate(made, c)) {
-        cut_free(made);
+static orb_status open_path(cutter *c, const orb_marks *cones, orb_disk **disk, orb_error *error) {
+    int32_t start = -1;
+    uint8_t *cut = calloc((size_t)c->mesh->n_edges + 1, sizeof *cut);
+    if (!cut)
         return error_memory(error);
-    }
-    made->mesh = c->mesh;
-    made->refined = c->refined;
-    made->refined_from = c->refined_from;
+    mark_path(c, cut, &start);
+    orb_status status = disk_create(c->mesh, cut, start, cones, disk, error);
+    free(cut);
+    if (status != ORB_OK)
+        return status;
+    (*disk)->refined = c->refined;
+    (*disk)->refined_from = c->refined_from;
     c->refined = NULL;
     c->refined_from = NULL;
-    disk_fill(made, c);
-    *disk = made;
     return ORB_OK;
 }
 
-static orb_status bad_cones(const orb_found *found, orb_error *error, const char *what) {
-    return error_set_elements(error, ORB_BAD_CONE, ORB_VERTEX, found->elements, found->entries, found->found,
-                              "the cone at vertex %d %s", (int)found->elements[0], what);
-}
-
-static orb_status check_cones(const orb_mesh *mesh, int32_t n_cones, const int32_t *cones, orb_error *error) {
-    orb_found outside = {0}, isolated = {0}, repeated = {0};
-    orb_status status = mesh_require_sphere(mesh, error);
-    if (status != ORB_OK)
-        return status;
-    if (n_cones < 2)
-        return error_set(error, ORB_BAD_CONE, "a cut joins two cones at least, here are %d: add a cone", (int)n_cones);
-    uint8_t *times = calloc((size_t)mesh->n_vertices, sizeof *times); /* 2 stands for more, too */
-    if (!times)
-        return error_memory(error);
-    for (int32_t s = 0; s < n_cones; s++) {
-        int32_t v = cones[s];
-        if (v < 0 || v >= mesh->n_vertices)
-            found_add(&outside, v);
-        else if (mesh->vertex_halfedge[v] < 0)
-            found_add(&isolated, v);
-        else if (times[v] < 2 && ++times[v] == 2)
-            found_add(&repeated, v);
-    }
-    free(times);
-    if (outside.found > 0)
-        return bad_cones(&outside, error, "does not exist: pick a vertex of this mesh");
-    if (isolated.found > 0)
-        return bad_cones(&isolated, error, "belongs to no triangle: pick a vertex of the surface");
-    if (repeated.found > 0)
-        return bad_cones(&repeated, error, "is given more than once: pick another vertex for each further cone");
-    return ORB_OK;
-}
-
-orb_status cut_create(const orb_mesh *mesh, int32_t n_cones, const int32_t *cones, orb_disk **disk, orb_error *error) {
+orb_status cut_path(const orb_mesh *mesh, const orb_marks *cones, orb_disk **disk, orb_error *error) {
     *disk = NULL;
-    orb_status status = check_cones(mesh, n_cones, cones, error);
-    if (status != ORB_OK)
-        return status;
-    cutter c = {.mesh = mesh, .n_cones = n_cones, .cones = cones};
+    cutter c = {.mesh = mesh, .n_cones = cones->n, .cones = cones->vertex};
     c.most_vertices = mesh->n_vertices + (mesh->n_vertices > least_room ? mesh->n_vertices : least_room);
-    status = find_path(&c, error);
+    orb_status status = find_path(&c, error);
     if (status == ORB_OK)
-        status = disk_create(&c, disk, error);
+        status = open_path(&c, cones, disk, error);
     mesh_free(c.refined);
     free(c.refined_from);
     free(c.corner);
@@ -322,15 +253,17 @@ orb_status cut_create(const orb_mesh *mesh, int32_t n_cones, const int32_t *cone
     return status;
 }
 
-void cut_free(orb_disk *disk) {
-    if (!disk)
-        return;
-    mesh_free(disk->refined);
-    free(disk->refined_from);
-    free(disk->copy_vertex);
-    free(disk->copy_pairing);
-    free(disk->triangles);
-    free(disk->boundary);
-    free(disk->corner_at);
-    free(disk);
+orb_status cut_surface(orb_mesh *mesh, const int32_t *parent, const orb_marks *marks, int32_t first, orb_disk **disk,
+                       orb_error *error) {
+    *disk = NULL;
+    uint8_t *cut = malloc((size_t)mesh->n_edges + 1);
+    if (!cut)
+        return error_memory(error);
+    orb_status status = cut_graph_find(mesh, parent, marks->n, marks->vertex, cut, error);
+    if (status == ORB_OK)
+        status = mesh_orient(mesh, cut, error);
+    if (status == ORB_OK)
+        status = disk_create(mesh, cut, first < 0 ? -1 : mesh->vertex_halfedge[marks->vertex[first]], marks, disk, error);
+    free(cut);
+    return status;
 }

@@ -6,11 +6,9 @@
 void orb_embedding_free(orb_embedding *embedding) {
     if (!embedding)
         return;
-    mesh_free(embedding->mesh);
-    signature_free(embedding->signature);
+    surface_free(embedding->surface);
     tile_free(embedding->tile);
     holonomy_free(embedding->copies);
-    free(embedding->cones);
     free(embedding->position);
     free(embedding->placed);
     free(embedding->weights);
@@ -18,16 +16,19 @@ void orb_embedding_free(orb_embedding *embedding) {
     free(embedding->coordinates);
     free(embedding->coordinates_low);
     free(embedding->seams);
+    free(embedding->refined_from);
+    free(embedding->input_corners);
+    free(embedding->generators);
     free(embedding);
 }
 
-/* Edges whose two triangles lie at different copies of an end. */
+/* Edges inside whose two triangles lie at different copies of an end. */
 static void find_seams(orb_embedding *embedding) {
     const orb_mesh *mesh = embedding->mesh;
     const int32_t *triangles = embedding->copies->triangles;
     for (int32_t e = 0; e < mesh->n_edges; e++) {
         int32_t h = mesh->edge_halfedge[e], twin = mesh->twin[h];
-        if (triangles[h] == triangles[halfedge_next(twin)] && triangles[halfedge_next(h)] == triangles[twin])
+        if (twin < 0 || (triangles[h] == triangles[halfedge_next(twin)] && triangles[halfedge_next(h)] == triangles[twin]))
             continue;
         int32_t *seam = embedding->seams + 2 * (size_t)embedding->n_seams++;
         seam[0] = halfedge_from(mesh, h);
@@ -35,16 +36,42 @@ static void find_seams(orb_embedding *embedding) {
     }
 }
 
-static void describe_mesh(orb_embedding *embedding) {
+/* Where each triangle and each corner of the input is in the mesh that was embedded. */
+static orb_status find_input(orb_embedding *embedding, orb_error *error) {
+    const orb_surface *surface = embedding->surface;
     const orb_mesh *mesh = embedding->mesh;
-    orb_report *report = &embedding->report;
-    report->vertices = mesh->n_vertices;
-    report->triangles = mesh->n_triangles;
-    report->components = mesh->n_components;
-    report->euler = mesh->euler;
-    report->boundary_loops = mesh->n_boundary_loops;
-    report->genus = mesh->genus;
-    report->orbifold_euler = embedding->signature->euler;
+    bool same = !surface->parent && surface->n_closed == 0;
+    int32_t *from = malloc(((size_t)mesh->n_triangles + 1) * sizeof *from);
+    int32_t *corners = malloc((3 * (size_t)surface->n_input_triangles + 1) * sizeof *corners);
+    embedding->input_corners = corners;
+    embedding->refined_from = from;
+    if (!from || !corners)
+        return error_memory(error);
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
+        int32_t plain = surface->parent ? surface->parent[t] : t;
+        from[t] = plain < surface->n_input_triangles ? plain : -1;
+        for (int32_t h = 3 * t; h < 3 * t + 3 && from[t] >= 0; h++)
+            for (int32_t c = 3 * plain; c < 3 * plain + 3; c++)
+                if (surface->input_triangles[c] == mesh->triangles[h])
+                    corners[c] = h;
+    }
+    if (same) {
+        free(from);
+        embedding->refined_from = NULL;
+    }
+    return ORB_OK;
+}
+
+static orb_status list_generators(orb_embedding *embedding, orb_error *error) {
+    const orb_tile *tile = embedding->tile;
+    embedding->generators = malloc((9 * (size_t)tile->word->n_sides + 1) * sizeof *embedding->generators);
+    if (!embedding->generators)
+        return error_memory(error);
+    for (int32_t s = 0; s < tile->word->n_sides && !tile->fixed; s++)
+        if (tile->word->partner[s] >= s)
+            isometry_matrix(tile->geometry, tile->pairings[s],
+                            embedding->generators + 9 * (size_t)embedding->n_generators++);
+    return ORB_OK;
 }
 
 static orb_status count_float_flips(orb_embedding *embedding, orb_error *error) {
@@ -79,26 +106,37 @@ orb_status embedding_finish(orb_embedding *embedding, orb_error *error) {
         int32_t *fitted = realloc(embedding->seams, 2 * (size_t)embedding->n_seams * sizeof *fitted);
         embedding->seams = fitted ? fitted : embedding->seams;
     }
-    describe_mesh(embedding);
-    return count_float_flips(embedding, error);
+    orb_status status = find_input(embedding, error);
+    if (status == ORB_OK)
+        status = list_generators(embedding, error);
+    return status == ORB_OK ? count_float_flips(embedding, error) : status;
 }
 
 void orb_embedding_view(const orb_embedding *embedding, orb_view *view) {
+    const orb_surface *surface = embedding->surface;
     *view = (orb_view){.n_vertices = embedding->mesh->n_vertices,
                        .n_triangles = embedding->mesh->n_triangles,
                        .n_copies = embedding->copies->n_copies,
-                       .n_cones = embedding->tile->n_cones,
+                       .n_cones = surface->n_marks,
                        .n_edges = embedding->mesh->n_edges,
                        .n_seams = embedding->n_seams,
+                       .n_input_triangles = surface->n_input_triangles,
+                       .vertices = embedding->mesh->vertices,
+                       .triangles = embedding->mesh->triangles,
+                       .refined_from = embedding->refined_from,
+                       .input_corners = embedding->input_corners,
                        .cut_triangles = embedding->copies->triangles,
                        .cut_to_vertex = embedding->copies->vertex,
                        .embedding = embedding->coordinates,
                        .embedding_low = embedding->coordinates_low,
-                       .cones = embedding->cones,
-                       .orders = embedding->tile->orders,
+                       .cones = surface->vertex,
+                       .orders = surface->order,
+                       .mirrors = surface->mirror,
                        .weights = embedding->edge_weights,
+                       .n_generators = embedding->n_generators,
+                       .generators = embedding->generators,
                        .seams = embedding->seams,
-                       .signature = embedding->signature->text,
+                       .signature = surface->signature ? surface->signature->text : "",
                        .geometry = geometry_name(embedding->tile->geometry)};
 }
 

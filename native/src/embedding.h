@@ -3,14 +3,12 @@
 #define ORB_EMBEDDING_H
 
 #include "holonomy.h"
-#include "mesh.h"
-#include "signature.h"
+#include "surface.h"
 #include "tile.h"
 
 struct orb_embedding {
-    orb_mesh *mesh;
-    orb_signature *signature;
-    int32_t *cones; /* [tile->n_cones] vertices */
+    orb_surface *surface;
+    orb_mesh *mesh; /* the surface's */
     orb_tile *tile; /* after the affine modulus, where there is one */
     orb_copies *copies;
     orb_point *position;                   /* [mesh->n_vertices] isolated vertices: the origin */
@@ -19,7 +17,11 @@ struct orb_embedding {
     double *edge_weights;                  /* [mesh->n_edges*3] rows i, j, w_ij for the view */
     double *coordinates, *coordinates_low; /* [copies->n_copies*3] for the view */
     int32_t n_seams;
-    int32_t *seams; /* [n_seams*2] */
+    int32_t *seams;         /* [n_seams*2] */
+    int32_t *refined_from;  /* [mesh->n_triangles] for the view; NULL: the triangles are the input's */
+    int32_t *input_corners; /* [surface->n_input_triangles*3] for the view */
+    int32_t n_generators;
+    double *generators; /* [n_generators*9] for the view */
     orb_report report;
 };
 

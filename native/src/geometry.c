@@ -28,6 +28,7 @@ int geometry_curvature(const orb_geometry *geometry) { return geometry->K; }
 orb_chart geometry_first_chart(const orb_geometry *geometry) { return geometry->first_chart; }
 orb_chart geometry_last_chart(const orb_geometry *geometry) { return geometry->last_chart; }
 bool geometry_any_start(const orb_geometry *geometry) { return geometry->any_start; }
+bool geometry_has_translations(const orb_geometry *geometry) { return geometry->K == 0; }
 double geometry_longest_step(const orb_geometry *geometry) { return geometry->longest_step; }
 
 /* ---------------------------------------------------------------------------------------- double-double and back */
@@ -74,6 +75,10 @@ static double atan_ratio(const orb_geometry *geometry, double r) { return r > 0 
 
 double geometry_distance(const orb_geometry *geometry, orb_point p, orb_point q) {
     return 2 * geometry->atan(cabs(geometry_toward(geometry, p, q)));
+}
+
+bool geometry_is_antipodal(const orb_geometry *geometry, orb_point p, orb_point q) {
+    return geometry->K > 0 && !(cabs(geometry_toward(geometry, p, q)) < 1e6);
 }
 
 double complex geometry_log(const orb_geometry *geometry, orb_point p, orb_point q) {
@@ -144,24 +149,33 @@ orb_point geometry_from_convex_chart(const orb_geometry *geometry, double comple
 
 /* ------------------------------------------------------------------------------------------------- isometries */
 
-orb_isometry isometry_identity(void) { return (orb_isometry){point_of(1), point_of(0)}; }
+orb_isometry isometry_identity(void) { return (orb_isometry){point_of(1), point_of(0), false}; }
+
+static orb_point conjugate_if(bool condition, orb_point p) { return condition ? point_conjugate(p) : p; }
 
 /* Only the ratio of a and b counts: keep |a| within [1, 2) by an exact power of two. */
 static orb_isometry scaled(ddc a, ddc b) {
     int exponent = 0;
     frexp(hypot(a.re.hi, a.im.hi), &exponent);
     dd scale = dd_of(ldexp(1, 1 - exponent));
-    return (orb_isometry){narrow(ddc_scale(a, scale)), narrow(ddc_scale(b, scale))};
+    return (orb_isometry){narrow(ddc_scale(a, scale)), narrow(ddc_scale(b, scale)), false};
 }
 
 orb_isometry isometry_compose(const orb_geometry *geometry, orb_isometry outer, orb_isometry inner) {
-    ddc a1 = wide(outer.a), b1 = wide(outer.b), a2 = wide(inner.a), b2 = wide(inner.b);
+    /* conj((a z + b) / (conj(a) - K conj(b) z)) is the map of conj(z) with conj(a), conj(b) */
+    ddc a1 = wide(outer.a), b1 = wide(outer.b);
+    ddc a2 = wide(conjugate_if(outer.reflects, inner.a)), b2 = wide(conjugate_if(outer.reflects, inner.b));
     ddc a = ddc_add(ddc_multiply(a1, a2), curved(geometry, ddc_scale(ddc_multiply(b1, ddc_conjugate(b2)), dd_of(-1))));
     ddc b = ddc_add(ddc_multiply(a1, b2), ddc_multiply(b1, ddc_conjugate(a2)));
-    return scaled(a, b);
+    orb_isometry product = scaled(a, b);
+    product.reflects = outer.reflects != inner.reflects;
+    return product;
 }
 
-orb_isometry isometry_inverse(orb_isometry h) { return (orb_isometry){point_conjugate(h.a), {-h.b.z, -h.b.low}}; }
+orb_isometry isometry_inverse(orb_isometry h) {
+    orb_point b = conjugate_if(h.reflects, h.b);
+    return (orb_isometry){conjugate_if(!h.reflects, h.a), {-b.z, -b.low}, h.reflects};
+}
 
 /* conj(a) - K conj(b) z */
 static ddc denominator(const orb_geometry *geometry, orb_isometry h, ddc z) {
@@ -170,22 +184,22 @@ static ddc denominator(const orb_geometry *geometry, orb_isometry h, ddc z) {
 }
 
 orb_point isometry_apply(const orb_geometry *geometry, orb_isometry h, orb_point p) {
-    ddc z = wide(p);
+    ddc z = wide(conjugate_if(h.reflects, p));
     return narrow(ddc_divide(ddc_add(ddc_multiply(wide(h.a), z), wide(h.b)), denominator(geometry, h, z)));
 }
 
 double complex isometry_turn(const orb_geometry *geometry, orb_isometry h, orb_point p) {
-    double complex q = conj(narrow(denominator(geometry, h, wide(p))).z), unit = q / cabs(q);
+    double complex q = conj(narrow(denominator(geometry, h, wide(conjugate_if(h.reflects, p)))).z), unit = q / cabs(q);
     return unit * unit;
 }
 
 orb_isometry isometry_to_origin(const orb_geometry *geometry, orb_point p) {
     (void)geometry; /* z -> (z - p) / (1 + K conj(p) z) in all three */
-    return (orb_isometry){point_of(1), {-p.z, -p.low}};
+    return (orb_isometry){point_of(1), {-p.z, -p.low}, false};
 }
 
 orb_isometry isometry_rotation_about_origin(double angle) {
-    return (orb_isometry){point_of(CMPLX(cos(angle / 2), sin(angle / 2))), point_of(0)};
+    return (orb_isometry){point_of(CMPLX(cos(angle / 2), sin(angle / 2))), point_of(0), false};
 }
 
 /* The rotation about the origin that takes the direction of s to that of t: a is on the bisector. */
@@ -208,8 +222,30 @@ orb_isometry isometry_pairing(const orb_geometry *geometry, orb_point p, orb_poi
     return isometry_compose(geometry, isometry_inverse(home1), isometry_compose(geometry, turn, home));
 }
 
+orb_isometry isometry_reflection(const orb_geometry *geometry, orb_point p, orb_point q, orb_point p1, orb_point q1) {
+    orb_isometry h = isometry_pairing(geometry, point_conjugate(p), point_conjugate(q), p1, q1);
+    h.reflects = true;
+    return h;
+}
+
+/* With w = x + i y and t the coordinates, and n = |a|^2 + K |b|^2:
+ *     w -> (a^2 w - K b^2 conj(w) + 2 a b t) / n,   t -> ((|a|^2 - K |b|^2) t - 2 K Re(a conj(b) w)) / n */
+void isometry_matrix(const orb_geometry *geometry, orb_isometry h, double matrix[9]) {
+    int K = geometry->K;
+    double complex a = h.a.z + h.a.low, b = h.b.z + h.b.low;
+    double aa = creal(a * conj(a)), bb = creal(b * conj(b)), n = aa + K * bb;
+    for (int column = 0; column < 3; column++) {
+        double complex w = column == 0 ? 1 : column == 1 ? CMPLX(0, h.reflects ? -1 : 1) : 0;
+        double t = column == 2;
+        double complex image = (a * a * w - K * b * b * conj(w) + 2 * t * a * b) / n;
+        matrix[column] = creal(image);
+        matrix[3 + column] = cimag(image);
+        matrix[6 + column] = ((aa - K * bb) * t - 2 * K * creal(a * conj(b) * w)) / n;
+    }
+}
+
 bool isometry_same(const orb_geometry *geometry, orb_isometry g, orb_isometry h, double tolerance) {
     orb_point origin = point_of(0), g0 = isometry_apply(geometry, g, origin), h0 = isometry_apply(geometry, h, origin);
     double complex turn = isometry_turn(geometry, g, origin) - isometry_turn(geometry, h, origin);
-    return geometry_distance(geometry, g0, h0) <= tolerance && cabs(turn) <= tolerance;
+    return g.reflects == h.reflects && geometry_distance(geometry, g0, h0) <= tolerance && cabs(turn) <= tolerance;
 }

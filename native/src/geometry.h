@@ -2,7 +2,7 @@
  *
  * A point is a complex number z in the chart whose metric is 2 |dz| / (1 + K |z|^2): stereographic projection for
  * K = 1, half the usual coordinate for K = 0, the Poincaré disk for K = -1. Every orientation-preserving isometry
- * is z -> (a z + b) / (conj(a) - K conj(b) z) in all three, and the translation that takes p to the origin is
+ * is z -> (a z + b) / (conj(a) - K conj(b) z) in all three, every other one the same of conj(z), and the translation that takes p to the origin is
  * z -> (z - p) / (1 + K conj(p) z). So K enters as a number, and nobody but this file and tile.c looks at it.
  *
  * Points and isometries carry double-double precision (value + low part), since in the hyperbolic plane all of the
@@ -28,9 +28,10 @@ typedef struct orb_point {
     double complex z, low; /* the point is z + low */
 } orb_point;
 
-/* z -> (a z + b) / (conj(a) - K conj(b) z) */
+/* z -> (a z + b) / (conj(a) - K conj(b) z), or the same of conj(z) */
 typedef struct orb_isometry {
     orb_point a, b;
+    bool reflects; /* reverses orientation: of conj(z) */
 } orb_isometry;
 
 /* curvature > 0, 0, < 0: sphere, plane, hyperbolic plane. A constant; never freed. */
@@ -45,6 +46,8 @@ orb_chart geometry_last_chart(const orb_geometry *geometry);
 /* --- how the minimiser treats the geometry (one row of a table each, docs/decisions.md) --- */
 /* The energy is quadratic: any starting point will do, so none is computed. */
 bool geometry_any_start(const orb_geometry *geometry);
+/* What may move without changing any edge: translations, or rotations about an axis. */
+bool geometry_has_translations(const orb_geometry *geometry);
 /* The longest step of a vertex that the minimiser may try; infinite where the energy is convex. */
 double geometry_longest_step(const orb_geometry *geometry);
 
@@ -57,6 +60,8 @@ orb_point point_linear(double complex a, double complex b, orb_point p);
 /* t: where q goes when p is moved to the origin; direction from p to q, |t| = tan_K(distance / 2). */
 double complex geometry_toward(const orb_geometry *geometry, orb_point p, orb_point q);
 double geometry_distance(const orb_geometry *geometry, orb_point p, orb_point q);
+/* Whether the two are so nearly opposite on the sphere that they determine no geodesic. */
+bool geometry_is_antipodal(const orb_geometry *geometry, orb_point p, orb_point q);
 double complex geometry_log(const orb_geometry *geometry, orb_point p, orb_point q);
 orb_point geometry_exp(const orb_geometry *geometry, orb_point p, double complex v);
 /* The phase by which parallel transport along the geodesic p -> q turns a vector's frame coordinates. */
@@ -86,13 +91,16 @@ orb_isometry isometry_identity(void);
 orb_isometry isometry_compose(const orb_geometry *geometry, orb_isometry outer, orb_isometry inner);
 orb_isometry isometry_inverse(orb_isometry h);
 orb_point isometry_apply(const orb_geometry *geometry, orb_isometry h, orb_point p);
-/* the phase by which h turns the frame at p: derivative / |derivative| */
+/* the phase by which h turns the frame at p: a vector v goes to turn v, or turn conj(v) if h reflects */
 double complex isometry_turn(const orb_geometry *geometry, orb_isometry h, orb_point p);
 /* p -> origin without rotation */
 orb_isometry isometry_to_origin(const orb_geometry *geometry, orb_point p);
 orb_isometry isometry_rotation_about_origin(double angle);
-/* the one that takes p to p1 and the direction of q to that of q1 */
+/* the one that takes p to p1 and the direction of q to that of q1, keeping orientation or reversing it */
 orb_isometry isometry_pairing(const orb_geometry *geometry, orb_point p, orb_point q, orb_point p1, orb_point q1);
+orb_isometry isometry_reflection(const orb_geometry *geometry, orb_point p, orb_point q, orb_point p1, orb_point q1);
+/* its matrix, by rows, on the coordinates of geometry_coordinates */
+void isometry_matrix(const orb_geometry *geometry, orb_isometry h, double matrix[9]);
 /* whether the two move the origin to within `tolerance` of one another and turn it alike */
 bool isometry_same(const orb_geometry *geometry, orb_isometry g, orb_isometry h, double tolerance);
 

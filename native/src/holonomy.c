@@ -8,6 +8,19 @@
  * group that a coarse mesh's pieces meet are far apart. */
 static const double same_element = 1e-7;
 
+orb_isometry holonomy_element(const orb_tile *tile, orb_copy_place place) {
+    if (place.kind == PLACE_SELF)
+        return isometry_identity();
+    return (place.kind == PLACE_SIDE ? tile->pairings : tile->elements)[place.index];
+}
+
+/* Its number in the list of isometries that holonomy_create makes: the identity, the pairings, the corners' elements. */
+static int32_t element_number(const orb_tile *tile, orb_copy_place place) {
+    if (place.kind == PLACE_SELF)
+        return 0;
+    return 1 + place.index + (place.kind == PLACE_CORNER ? tile->word->n_sides : 0);
+}
+
 /* The work of joining the pieces of refined triangles. */
 typedef struct joiner {
     const orb_mesh *mesh;
@@ -17,7 +30,6 @@ typedef struct joiner {
     int32_t room_isometries, room_copies;
     int32_t *next_copy;     /* [room_copies] chain of the copies of one vertex */
     int32_t *cone_of;       /* [mesh->n_vertices] corner number of the tile, or -1 */
-    int32_t *segment;       /* [disk->mesh->n_triangles*3] s on the left bank's half-edges, -s on the right bank's */
     int32_t *element;       /* [disk->mesh->n_triangles] group element of each piece; -1 before it is met */
     int32_t *first, *piece; /* pieces of input triangle t: piece[first[t]] ... piece[first[t + 1] - 1] */
     int32_t *queue;
@@ -95,22 +107,6 @@ static orb_status find_copy(joiner *work, int32_t vertex, int32_t element, int32
     return ORB_OK;
 }
 
-/* Marks the half-edges on both banks of the path with the segment that they lie on. */
-static void mark_segments(joiner *work) {
-    const orb_disk *disk = work->disk;
-    const orb_mesh *mesh = disk->mesh;
-    for (int32_t s = 1; s < work->tile->n_cones; s++)
-        for (int32_t i = disk->corner_at[s - 1]; i < disk->corner_at[s]; i++) {
-            int32_t from = disk->copy_vertex[disk->boundary[i]];
-            int32_t to = disk->copy_vertex[disk->boundary[(i + 1) % disk->n_boundary]];
-            int32_t h = mesh->vertex_halfedge[from];
-            while (halfedge_to(mesh, h) != to)
-                h = mesh->twin[halfedge_previous(h)];
-            work->segment[h] = s;
-            work->segment[mesh->twin[h]] = -s;
-        }
-}
-
 /* Lays the pieces of one input triangle out in the frame of its first piece. */
 static orb_status join_pieces(joiner *work, int32_t triangle, orb_error *error) {
     const orb_mesh *mesh = work->disk->mesh;
@@ -120,15 +116,13 @@ static orb_status join_pieces(joiner *work, int32_t triangle, orb_error *error) 
     while (head < tail) {
         int32_t t = work->queue[head++];
         for (int32_t h = 3 * t; h < 3 * t + 3; h++) {
-            int32_t other = mesh->twin[h] / 3, s = work->segment[h];
+            int32_t other = mesh->twin[h] / 3, s = work->disk->side[h];
             if (work->disk->refined_from[other] != triangle || work->element[other] >= 0)
                 continue;
             work->element[other] = work->element[t];
-            if (s != 0) {
-                /* Continuity, k x = k' g_s x, where the left bank is at k and the right bank at k' g_s. */
-                orb_isometry pairing = work->tile->pairings[s > 0 ? s : -s];
-                if (s > 0)
-                    pairing = isometry_inverse(pairing);
+            if (s >= 0) {
+                /* Continuity, k x = k' g_s x, where this side is at k and its partner at k' g_s. */
+                orb_isometry pairing = isometry_inverse(work->tile->pairings[s]);
                 orb_isometry here = work->copies->isometries[work->element[t]];
                 orb_status status = compose(work, here, pairing, &work->element[other], error);
                 if (status != ORB_OK)
@@ -150,7 +144,7 @@ static orb_status place_triangle(joiner *work, int32_t triangle, orb_error *erro
             for (int32_t h = 3 * work->piece[i]; h < 3 * work->piece[i] + 3; h++) {
                 if (disk->mesh->triangles[h] != vertex)
                     continue;
-                orb_isometry bank = work->tile->pairings[disk->copy_pairing[disk->triangles[h]]];
+                orb_isometry bank = holonomy_element(work->tile, disk->place[disk->triangles[h]]);
                 orb_isometry piece = work->copies->isometries[work->element[h / 3]];
                 status = compose(work, piece, bank, &element, error);
                 break;
@@ -166,18 +160,20 @@ static orb_status joiner_allocate(joiner *work, orb_error *error) {
     size_t pieces = (size_t)work->disk->mesh->n_triangles;
     work->next_copy = malloc((n + 1) * sizeof(int32_t));
     work->cone_of = malloc((n + 1) * sizeof(int32_t));
-    work->segment = calloc(3 * pieces, sizeof(int32_t));
     work->element = malloc(pieces * sizeof(int32_t));
     work->first = calloc(m + 1, sizeof(int32_t));
     work->piece = malloc(pieces * sizeof(int32_t));
     work->queue = malloc(pieces * sizeof(int32_t));
-    if (!work->next_copy || !work->cone_of || !work->segment || !work->element || !work->first || !work->piece ||
+    if (!work->next_copy || !work->cone_of || !work->element || !work->first || !work->piece ||
         !work->queue)
         return error_memory(error);
     for (size_t v = 0; v < n; v++)
         work->next_copy[v] = work->cone_of[v] = -1;
-    for (int32_t j = 0; j < work->tile->n_cones; j++)
-        work->cone_of[work->disk->boundary[work->disk->corner_at[j]]] = j;
+    for (int32_t s = 0; s < work->tile->word->n_sides; s++) {
+        int32_t u = work->disk->boundary[work->disk->corner_at[s]];
+        if (work->tile->word->order[work->tile->word->node[s]] > 1 && work->disk->place[u].kind == PLACE_SELF)
+            work->cone_of[work->disk->copy_vertex[u]] = s;
+    }
     for (size_t t = 0; t < pieces; t++) {
         work->element[t] = -1;
         work->first[work->disk->refined_from[t] + 1]++;
@@ -189,14 +185,12 @@ static orb_status joiner_allocate(joiner *work, orb_error *error) {
     for (size_t t = m; t > 0; t--)
         work->first[t] = work->first[t - 1];
     work->first[0] = 0;
-    mark_segments(work);
     return ORB_OK;
 }
 
 static void joiner_free(joiner *work) {
     free(work->next_copy);
     free(work->cone_of);
-    free(work->segment);
     free(work->element);
     free(work->first);
     free(work->piece);
@@ -220,22 +214,24 @@ orb_status holonomy_create(const orb_mesh *mesh, const orb_disk *disk, const orb
                            orb_error *error) {
     *result = NULL;
     orb_status status = error_memory(error);
-    size_t pairings = (size_t)tile->n_pairings, corners = 3 * (size_t)mesh->n_triangles;
+    size_t sides = (size_t)tile->word->n_sides, corners = 3 * (size_t)mesh->n_triangles;
     orb_copies *copies = calloc(1, sizeof *copies);
     if (!copies)
         return status;
     copies->n_copies = disk->refined ? mesh->n_vertices : disk->n_copies;
-    copies->n_isometries = tile->n_pairings;
+    copies->n_isometries = 1 + 2 * tile->word->n_sides;
     copies->vertex = malloc(((size_t)copies->n_copies + 1) * sizeof(int32_t));
     copies->isometry = malloc(((size_t)copies->n_copies + 1) * sizeof(int32_t));
     copies->triangles = malloc(corners * sizeof(int32_t));
-    copies->isometries = malloc(pairings * sizeof *copies->isometries);
+    copies->isometries = malloc((1 + 2 * sides) * sizeof *copies->isometries);
     if (!copies->vertex || !copies->isometry || !copies->triangles || !copies->isometries)
         goto done;
-    memcpy(copies->isometries, tile->pairings, pairings * sizeof *copies->isometries);
+    copies->isometries[0] = isometry_identity();
+    memcpy(copies->isometries + 1, tile->pairings, sides * sizeof *copies->isometries);
+    memcpy(copies->isometries + 1 + sides, tile->elements, sides * sizeof *copies->isometries);
     for (int32_t u = 0; u < copies->n_copies; u++) {
         copies->vertex[u] = disk->refined ? u : disk->copy_vertex[u];
-        copies->isometry[u] = disk->refined ? 0 : disk->copy_pairing[u];
+        copies->isometry[u] = disk->refined ? 0 : element_number(tile, disk->place[u]);
     }
     if (disk->refined) {
         status = join_refined(mesh, disk, tile, copies, error);

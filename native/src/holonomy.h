@@ -6,7 +6,7 @@
 #ifndef ORB_HOLONOMY_H
 #define ORB_HOLONOMY_H
 
-#include "cut.h"
+#include "disk.h"
 #include "tile.h"
 
 typedef struct orb_copies {
@@ -17,6 +17,9 @@ typedef struct orb_copies {
     int32_t n_isometries;
     orb_isometry *isometries; /* isometries[0] is the identity */
 } orb_copies;
+
+/* The group element at which a copy of the disk lies. */
+orb_isometry holonomy_element(const orb_tile *tile, orb_copy_place place);
 
 orb_status holonomy_create(const orb_mesh *mesh, const orb_disk *disk, const orb_tile *tile, orb_copies **copies,
                            orb_error *error);

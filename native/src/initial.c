@@ -6,54 +6,66 @@
 
 #include "cholesky.h"
 
-void initial_cones_only(const orb_disk *disk, const orb_tile *tile, orb_point *position) {
-    for (int32_t v = 0; v < disk->mesh->n_vertices; v++)
-        position[v] = point_of(0);
-    for (int32_t c = 0; c < tile->n_cones; c++)
-        position[disk->boundary[disk->corner_at[c]]] = tile->corners[c];
-}
-
-static double boundary_length(const orb_disk *disk, int32_t at) {
+static double step_length(const orb_disk *disk, int32_t at) {
     const double *p = disk->mesh->vertices + 3 * (size_t)disk->copy_vertex[disk->boundary[at]];
     const double *q = disk->mesh->vertices + 3 * (size_t)disk->copy_vertex[disk->boundary[(at + 1) % disk->n_boundary]];
     return hypot(hypot(q[0] - p[0], q[1] - p[1]), q[2] - p[2]); /* no square leaves the range of doubles */
 }
 
-/* How far along the side each vertex i of segment s of the path goes, share[i - disk->corner_at[s]] of [0, 1): by arc
- * length, but apart even where vertices coincide. */
+static int32_t side_end(const orb_disk *disk, int32_t s) {
+    return s + 1 < disk->word->n_sides ? disk->corner_at[s + 1] : disk->n_boundary;
+}
+
+/* How far along side s each of its vertices i goes, share[i - disk->corner_at[s]] of [0, 1): by arc length, but apart
+ * even where vertices coincide. */
 static void divide_side(const orb_disk *disk, int32_t s, double *share) {
     static const double least = 1e-6; /* step, of the mean one */
-    int32_t first = disk->corner_at[s], n = disk->corner_at[s + 1] - first;
+    int32_t first = disk->corner_at[s], n = side_end(disk, s) - first;
     double total = 0, along = 0;
     for (int32_t i = 0; i < n; i++)
-        total += boundary_length(disk, first + i);
+        total += step_length(disk, first + i);
     bool even = !(total > 0) || !isfinite(total);
     double shortest = even ? 1 : least * total / n;
     for (int32_t i = 0; i < n; i++) {
         share[i] = along;
-        along += even ? 1 : fmax(shortest, boundary_length(disk, first + i));
+        along += even ? 1 : fmax(shortest, step_length(disk, first + i));
     }
     for (int32_t i = 0; i < n; i++)
         share[i] /= along;
 }
 
-/* The left bank along the tile's sides; then every right-bank copy where its pairing takes it. share: room for
- * [n_boundary]. */
-static void place_boundary(const orb_disk *disk, const orb_tile *tile, double *share, orb_point *position,
-                           double complex *chart) {
-    const orb_geometry *geometry = tile->geometry;
-    for (int32_t s = 0; s + 1 < tile->n_cones; s++) {
+/* Each vertex of the boundary where its own copy is; share: room for [n_boundary]. */
+static void place_boundary(const orb_disk *disk, const orb_tile *tile, double *share, orb_point *position) {
+    for (int32_t v = 0; v < disk->mesh->n_vertices; v++)
+        position[v] = point_of(0);
+    for (int32_t s = 0; s < tile->word->n_sides; s++) {
         divide_side(disk, s, share);
-        for (int32_t i = disk->corner_at[s]; i < disk->corner_at[s + 1]; i++)
-            position[disk->boundary[i]] =
-                geometry_exp(geometry, tile->corners[s], share[i - disk->corner_at[s]] * tile->sides[s]);
+        for (int32_t i = disk->corner_at[s]; i < side_end(disk, s); i++) {
+            int32_t u = disk->boundary[i];
+            double complex along = share[i - disk->corner_at[s]] * tile->sides[s];
+            if (disk->place[u].kind == PLACE_SELF)
+                position[disk->copy_vertex[u]] = geometry_exp(tile->geometry, tile->corners[s], along);
+        }
     }
-    for (int32_t c = 0; c < tile->n_cones; c++)
-        position[disk->boundary[disk->corner_at[c]]] = tile->corners[c];
+}
+
+orb_status initial_boundary(const orb_disk *disk, const orb_tile *tile, orb_point *position, orb_error *error) {
+    double *share = malloc(((size_t)disk->n_boundary + 1) * sizeof *share);
+    if (!share)
+        return error_memory(error);
+    place_boundary(disk, tile, share, position);
+    free(share);
+    return ORB_OK;
+}
+
+/* chart[n_copies]: the boundary's copies. */
+static void chart_boundary(const orb_disk *disk, const orb_tile *tile, const orb_point *position,
+                           double complex *chart) {
     for (int32_t i = 0; i < disk->n_boundary; i++) {
         int32_t u = disk->boundary[i];
-        orb_isometry bank = tile->pairings[disk->copy_pairing[u]];
-        chart[u] = geometry_convex_chart(geometry, isometry_apply(geometry, bank, position[disk->copy_vertex[u]]));
+        orb_isometry element = holonomy_element(tile, disk->place[u]);
+        orb_point p = isometry_apply(tile->geometry, element, position[disk->copy_vertex[u]]);
+        chart[u] = geometry_convex_chart(tile->geometry, p);
     }
 }
 
@@ -157,12 +169,12 @@ orb_status initial_embed(const orb_disk *disk, const orb_tile *tile, const doubl
                          int32_t n_order, orb_point *position, orb_error *error) {
     laplacian system = {0};
     double complex *chart = malloc(((size_t)disk->n_copies + 1) * sizeof *chart);
-    double *share = malloc(((size_t)disk->n_boundary + 1) * sizeof *share);
-    orb_status status = chart && share ? number_interior(disk, &system, error) : error_memory(error);
+    orb_status status = chart ? number_interior(disk, &system, error) : error_memory(error);
+    if (status == ORB_OK)
+        status = initial_boundary(disk, tile, position, error);
     if (status != ORB_OK)
         goto done;
-    initial_cones_only(disk, tile, position);
-    place_boundary(disk, tile, share, position, chart);
+    chart_boundary(disk, tile, position, chart);
     if (system.n == 0)
         goto done;
     status = build_laplacian(disk, weights, chart, &system, error);
@@ -178,7 +190,6 @@ orb_status initial_embed(const orb_disk *disk, const orb_tile *tile, const doubl
     }
 done:
     free(chart);
-    free(share);
     laplacian_clear(&system);
     return status;
 }

@@ -6,11 +6,11 @@
 #ifndef ORB_INITIAL_H
 #define ORB_INITIAL_H
 
-#include "cut.h"
-#include "tile.h"
+#include "holonomy.h"
 
-/* Cones at their corners, all else at the origin: enough where the energy is quadratic. */
-void initial_cones_only(const orb_disk *disk, const orb_tile *tile, orb_point *position /* [disk vertices] */);
+/* The boundary alone, all else at the origin: enough where the energy is quadratic. */
+orb_status initial_boundary(const orb_disk *disk, const orb_tile *tile, orb_point *position /* [disk vertices] */,
+                            orb_error *error);
 
 /* weights[disk->mesh->n_edges] > 0. `vertex_order` [n_order]: a fill-reducing ordering of (at least) the disk's inner
  * vertices; NULL: one is computed. */

@@ -19,7 +19,8 @@ struct orb_job {
     /* Read by the thread only, after the start. */
     orb_mesh_arrays mesh;
     orb_request request;
-    double *vertices, *edge_weights;
+    double *vertices, *edge_weights, *corners;
+    orb_polygon polygon;
     int32_t *triangles, *cones, *orders;
     char *signature;
     /* Under the mutex. */
@@ -58,6 +59,7 @@ static void job_free(orb_job *job) {
     free(job->cones);
     free(job->orders);
     free(job->edge_weights);
+    free(job->corners);
     free(job);
 }
 
@@ -108,6 +110,7 @@ static orb_job *job_create(const orb_mesh_arrays *mesh, const orb_request *reque
     if (!job)
         return NULL;
     void *vertices = NULL, *triangles = NULL, *signature = NULL, *cones = NULL, *orders = NULL, *weights = NULL;
+    void *corners = NULL;
     bool copied =
         job_copy(mesh->vertices, 3 * (int64_t)mesh->n_vertices, sizeof *mesh->vertices, &vertices) &&
         job_copy(mesh->triangles, 3 * (int64_t)mesh->n_triangles, sizeof *mesh->triangles, &triangles) &&
@@ -115,6 +118,8 @@ static orb_job *job_create(const orb_mesh_arrays *mesh, const orb_request *reque
         job_copy(request->orders, request->n_cones, sizeof *request->orders, &orders) &&
         job_copy(request->edge_weights, 3 * (int64_t)request->n_edge_weights, sizeof *request->edge_weights,
                  &weights) &&
+        (!request->polygon || job_copy(request->polygon->corners, 3 * (int64_t)request->polygon->n_corners,
+                                       sizeof *request->polygon->corners, &corners)) &&
         (!request->signature || job_copy(request->signature, (int64_t)strlen(request->signature) + 1, 1, &signature));
     job->vertices = vertices;
     job->triangles = triangles;
@@ -122,6 +127,7 @@ static orb_job *job_create(const orb_mesh_arrays *mesh, const orb_request *reque
     job->cones = cones;
     job->orders = orders;
     job->edge_weights = weights;
+    job->corners = corners;
     if (!copied) {
         job_free(job);
         return NULL;
@@ -132,6 +138,11 @@ static orb_job *job_create(const orb_mesh_arrays *mesh, const orb_request *reque
     job->request.cones = job->cones;
     job->request.orders = job->orders;
     job->request.edge_weights = job->edge_weights;
+    if (request->polygon) {
+        job->polygon = *request->polygon;
+        job->polygon.corners = job->corners;
+        job->request.polygon = &job->polygon;
+    }
     job->request.progress = job_progress;
     job->request.user = job;
     return job;

@@ -192,6 +192,8 @@ ORB_API orb_status orb_uv(const orb_embedding *embedding, orb_chart chart, doubl
     if (!embedding || !uv)
         return error_set(error, ORB_BAD_ARGUMENT, "%s is missing: pass one", uv ? "the embedding" : "the array uv");
     chart_frame frame = {.geometry = embedding->tile->geometry};
+    if (chart == ORB_CHART_DEFAULT && embedding->tile->fixed && geometry_has_translations(frame.geometry))
+        chart = ORB_CHART_CONFORMAL; /* a polygon is no tile, and has no period */
     const chart_row *row = find_chart(chart, frame.geometry);
     if (!row)
         return error_no_chart(chart, frame.geometry, error);

@@ -63,8 +63,7 @@ static orb_status minimiser_allocate(minimiser *work, orb_error *error) {
     work->held = -1;
     if (!work->system->is_complex)
         return ORB_OK;
-    for (int32_t v = 0; v < work->problem->n_vertices && work->held < 0; v++)
-        work->held = work->problem->freedom[v] == 1 ? v : -1;
+    work->held = work->problem->held;
     if (work->held >= 0) {
         work->held_column = malloc(n * sizeof *work->held_column);
         if (!work->held_column)
@@ -134,7 +133,7 @@ static orb_status factor(minimiser *work, orb_error *error) {
 static void hold(minimiser *work, double complex *vectors) {
     if (work->held < 0)
         return;
-    double complex across = CMPLX(0, 1) * problem_direction(work->problem, work->position[work->held]);
+    double complex across = CMPLX(0, 1) * problem_direction(work->problem, work->held, work->position[work->held]);
     double multiplier = creal(conj(across) * vectors[work->held]) / creal(work->held_column[work->held]);
     for (int32_t v = 0; v < work->problem->n_vertices; v++)
         vectors[v] -= multiplier * across * work->held_column[v];
@@ -163,9 +162,12 @@ static orb_status find_step(minimiser *work, double *slope, orb_error *error) {
 static void move(minimiser *work, double factor) {
     orb_point *from = work->trial;
     work->trial = work->position;
-    for (int32_t v = 0; v < work->problem->n_vertices; v++)
+    for (int32_t v = 0; v < work->problem->n_vertices; v++) {
         from[v] = work->step[v] == 0 ? work->trial[v]
                                      : geometry_exp(work->problem->geometry, work->trial[v], factor * work->step[v]);
+        if (work->problem->freedom[v] == 1)
+            from[v] = problem_onto_line(work->problem, v, from[v]);
+    }
     work->position = from;
 }
 

@@ -77,14 +77,14 @@ static root root_of(double complex u, double complex v) {
 
 /* The copies of a corner under the group that the side pairings generate: there must be `length`. */
 static orb_status find_orbit(const orb_tile *tile, int32_t cone, int64_t length, form *f, orb_error *error) {
-    f->order = tile->orders[cone];
+    f->order = tile->word->order[cone];
     f->roots = length > 0 ? malloc((size_t)length * sizeof *f->roots) : NULL;
     if (!f->roots)
         return error_memory(error);
     f->roots[0] = root_of(tile->corners[cone].z, 1);
     f->n_roots = 1;
     for (int32_t i = 0; i < f->n_roots; i++)
-        for (int32_t s = 1; s < tile->n_pairings; s++) {
+        for (int32_t s = 0; s < tile->word->n_sides; s++) {
             double complex a = tile->pairings[s].a.z, b = tile->pairings[s].b.z;
             root r = f->roots[i], image = root_of(a * r.u + b * r.v, conj(a) * r.v - conj(b) * r.u);
             bool known = false;
@@ -99,7 +99,7 @@ static orb_status find_orbit(const orb_tile *tile, int32_t cone, int64_t length,
     if (f->n_roots != length)
         return error_set(error, ORB_BAD_ARGUMENT, "the tile's side pairings do not generate the orbifold's group");
     for (int32_t i = 0; i < f->n_roots; i++)
-        for (int32_t c = 0; c < 2 * tile->n_cones - 2; c++) {
+        for (int32_t c = 0; c < tile->word->n_sides; c++) {
             root corner = root_of(tile->corners[c].z, 1);
             if (same_point(&corner, &f->roots[i])) {
                 f->roots[i] = corner;
@@ -127,13 +127,13 @@ static void find_factors(orb_quotient *quotient) {
 orb_status quotient_create(const orb_tile *tile, orb_quotient **result, orb_error *error) {
     *result = NULL;
     double euler = 2; /* of the orbifold: the group has 2 / euler elements */
-    for (int32_t i = 0; i < tile->n_cones; i++)
-        euler -= 1 - 1.0 / tile->orders[i];
-    if (tile->n_cones > 3 || !(euler > 0))
+    for (int32_t i = 0; i < tile->word->n_nodes; i++)
+        euler -= 1 - 1.0 / tile->word->order[i];
+    if (!word_is_path(tile->word) || tile->fixed || tile->word->n_nodes > 3 || !(euler > 0))
         return error_set(error, ORB_BAD_ARGUMENT,
                          "only a spherical orbifold has the whole sphere as its quotient: "
                          "choose a signature such as 33, 225, 332, 432 or 532");
-    if (tile->n_cones == 3 && llround(2 / euler) > largest_group)
+    if (tile->word->n_nodes == 3 && llround(2 / euler) > largest_group)
         return error_set(error, ORB_UNSUPPORTED_SIGNATURE,
                          "the group has %.0f elements, too many to divide the whole sphere by: take orders of at most "
                          "%d, or split the mesh along the seam",
@@ -142,15 +142,15 @@ orb_status quotient_create(const orb_tile *tile, orb_quotient **result, orb_erro
     orb_quotient *quotient = calloc(1, sizeof *quotient);
     if (!quotient)
         return status;
-    quotient->n_forms = tile->n_cones;
-    quotient->n_corners = 2 * tile->n_cones - 2;
+    quotient->n_forms = tile->word->n_nodes;
+    quotient->n_corners = tile->word->n_sides;
     quotient->corners = malloc((size_t)quotient->n_corners * sizeof *quotient->corners);
     if (!quotient->corners)
         goto done;
     for (int32_t c = 0; c < quotient->n_corners; c++)
         quotient->corners[c] = tile->corners[c];
-    for (int32_t i = 0; i < tile->n_cones; i++) {
-        int64_t length = llround(2 / euler / tile->orders[i]);
+    for (int32_t i = 0; i < tile->word->n_nodes; i++) {
+        int64_t length = llround(2 / euler / tile->word->order[i]);
         status = find_orbit(tile, i, length, &quotient->forms[i], error);
         if (status != ORB_OK)
             goto done;

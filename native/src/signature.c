@@ -47,6 +47,8 @@ static orb_status read_features(const char *text, orb_signature *signature, orb_
     for (size_t at = 0; text[at];) {
         char c = text[at];
         if (c == '*' || c == 'x' || c == 'o') {
+            if (c == '*')
+                signature->mirror_start[signature->n_mirrors] = signature->n_cones + signature->n_corners;
             int32_t *count = c == '*'   ? &signature->n_mirrors
                              : c == 'x' ? &signature->n_crosscaps
                                         : &signature->n_handles;
@@ -66,6 +68,7 @@ static orb_status read_features(const char *text, orb_signature *signature, orb_
             return status;
         ++*(signature->n_mirrors ? &signature->n_corners : &signature->n_cones);
     }
+    signature->mirror_start[signature->n_mirrors] = signature->n_cones + signature->n_corners;
     return ORB_OK;
 }
 
@@ -114,25 +117,24 @@ static void count_euler(orb_signature *signature) {
     signature->curvature = fits ? (exact.numerator > 0) - (exact.numerator < 0) : (twice > 0) - (twice < 0);
 }
 
+/* Teardrops and spindles: a sphere with one cone or two of different orders, a disk with such corners. */
 static orb_status refuse_bad_orbifold(const orb_signature *signature, orb_error *error) {
     const int32_t *n = signature->orders;
-    bool only_cones = signature_is_supported(signature) || (!signature->n_mirrors && !signature->n_crosscaps &&
-                                                            !signature->n_handles && signature->n_cones < 2);
-    bool only_mirror =
-        signature->n_mirrors == 1 && !signature->n_crosscaps && !signature->n_handles && !signature->n_cones;
-    int32_t count = only_mirror ? signature->n_corners : signature->n_cones;
-    if ((!only_cones && !only_mirror) || count > 2 || count == 0)
+    bool sphere = !signature->n_mirrors && !signature->n_crosscaps && !signature->n_handles;
+    bool disk = signature->n_mirrors == 1 && !signature->n_crosscaps && !signature->n_handles && !signature->n_cones;
+    int32_t count = sphere ? signature->n_cones : signature->n_corners;
+    if ((!sphere && !disk) || count > 2 || count == 0)
         return ORB_OK;
     const char *left = n[0] < 10 ? "" : "(", *right = n[0] < 10 ? "" : ")";
     if (count == 1)
         return error_set(
             error, ORB_BAD_ORBIFOLD,
-            "%s is not a good orbifold: a single cone or corner has no tiling; take %s%d%s%s%d%s or three cones",
-            signature->text, left, (int)n[0], right, left, (int)n[0], right);
+            "%s is not a good orbifold: a single cone or corner has no tiling; take %s%s%d%s%s%d%s or three of them",
+            signature->text, disk ? "*" : "", left, (int)n[0], right, left, (int)n[0], right);
     if (n[0] != n[1])
         return error_set(error, ORB_BAD_ORBIFOLD,
-                         "%s is not a good orbifold: two cones or corners need equal orders, as in %s%d%s%s%d%s",
-                         signature->text, left, (int)n[0], right, left, (int)n[0], right);
+                         "%s is not a good orbifold: two cones or corners need equal orders, as in %s%s%d%s%s%d%s",
+                         signature->text, disk ? "*" : "", left, (int)n[0], right, left, (int)n[0], right);
     return ORB_OK;
 }
 
@@ -140,8 +142,8 @@ static void write_text(orb_signature *signature, size_t room) {
     char *out = signature->text, *end = out + room;
     for (int32_t i = 0; i < signature->n_handles; i++)
         *out++ = 'o';
-    for (int32_t i = 0, total = signature->n_cones + signature->n_corners; i <= total; i++) {
-        for (int32_t m = 0; i == signature->n_cones && m < signature->n_mirrors; m++)
+    for (int32_t i = 0, m = 0, total = signature->n_cones + signature->n_corners; i <= total; i++) {
+        for (; m < signature->n_mirrors && signature->mirror_start[m] == i; m++)
             *out++ = '*';
         if (i < total)
             out +=
@@ -166,8 +168,9 @@ orb_status signature_parse(const char *text, orb_signature **result, orb_error *
     if (!signature)
         return status;
     signature->orders = malloc((length + 1) * sizeof *signature->orders);
+    signature->mirror_start = malloc((length + 1) * sizeof *signature->mirror_start);
     signature->text = malloc(room);
-    if (!signature->orders || !signature->text)
+    if (!signature->orders || !signature->mirror_start || !signature->text)
         goto done;
     status = read_features(text, signature, error);
     if (status != ORB_OK)
@@ -189,47 +192,34 @@ void signature_free(orb_signature *signature) {
     if (!signature)
         return;
     free(signature->orders);
+    free(signature->mirror_start);
     free(signature->text);
     free(signature);
 }
 
 bool signature_is_supported(const orb_signature *signature) {
-    return signature->n_cones >= 2 && !signature->n_mirrors && !signature->n_crosscaps && !signature->n_handles;
+    return signature->n_cones + signature->n_corners > 0 || signature->euler <= 0;
 }
 
-static int ascending(const void *a, const void *b) {
-    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return (x > y) - (x < y);
+orb_status signature_refuse(const orb_signature *signature, orb_error *error) {
+    return error_set(error, ORB_UNSUPPORTED_SIGNATURE,
+                     "%s has no cone or corner that would hold it in place on the sphere: add %s", signature->text,
+                     signature->n_mirrors ? "a cone, as in 2*, or two corners, as in *22" : "a cone, as in 2x");
 }
 
-orb_status signature_match(const orb_signature *signature, int32_t n_cones, const int32_t *orders, int32_t *matched,
-                           orb_error *error) {
-    if (!signature_is_supported(signature))
-        return error_set(error, ORB_UNSUPPORTED_SIGNATURE,
-                         "%s is not a sphere with cones; mirrors, handles and cross-caps are not in this version",
-                         signature->text);
-    if (n_cones != signature->n_cones)
-        return error_set(error, ORB_CONE_COUNT, "%s has %d cones but %d vertices were picked", signature->text,
-                         (int)signature->n_cones, (int)n_cones);
-    size_t bytes = (size_t)n_cones * sizeof *matched;
-    if (!orders) {
-        memcpy(matched, signature->orders, bytes);
-        return ORB_OK;
-    }
-    int32_t *sorted = malloc(2 * bytes);
-    if (!sorted)
+orb_status signature_with_mirrors(const orb_signature *signature, int32_t extra, orb_signature **result,
+                                  orb_error *error) {
+    *result = NULL;
+    size_t length = strlen(signature->text), crosscaps = (size_t)signature->n_crosscaps, head = length - crosscaps;
+    char *text = malloc(length + (size_t)extra + 1);
+    if (!text)
         return error_memory(error);
-    memcpy(sorted, orders, bytes);
-    memcpy(sorted + n_cones, signature->orders, bytes);
-    qsort(sorted, (size_t)n_cones, sizeof *sorted, ascending);
-    qsort(sorted + n_cones, (size_t)n_cones, sizeof *sorted, ascending);
-    bool same = memcmp(sorted, sorted + n_cones, bytes) == 0;
-    free(sorted);
-    if (!same)
-        return error_set(error, ORB_BAD_ORDER, "the orders given are not those of %s in another sequence",
-                         signature->text);
-    memcpy(matched, orders, bytes);
-    return ORB_OK;
+    memcpy(text, signature->text, head);
+    memset(text + head, '*', (size_t)extra);
+    memcpy(text + head + extra, signature->text + head, crosscaps + 1);
+    orb_status status = signature_parse(text, result, error);
+    free(text);
+    return status;
 }
 
 orb_status orb_signature_read(const char *text, orb_signature_info *info, int32_t *orders, int32_t capacity,
@@ -242,8 +232,15 @@ orb_status orb_signature_read(const char *text, orb_signature_info *info, int32_
         return status;
     static const char *const names[] = {"hyperbolic", "euclidean", "spherical"};
     int32_t total = signature->n_cones + signature->n_corners;
-    *info = (orb_signature_info){signature->curvature, names[signature->curvature + 1], signature->euler, total,
-                                 signature_is_supported(signature)};
+    *info = (orb_signature_info){.curvature = signature->curvature,
+                                 .geometry = names[signature->curvature + 1],
+                                 .euler = signature->euler,
+                                 .n_cones = total,
+                                 .supported = signature_is_supported(signature),
+                                 .n_interior = signature->n_cones,
+                                 .n_mirrors = signature->n_mirrors,
+                                 .n_crosscaps = signature->n_crosscaps,
+                                 .n_handles = signature->n_handles};
     for (int32_t i = 0; orders && i < total && i < capacity; i++)
         orders[i] = signature->orders[i];
     signature_free(signature);

@@ -128,14 +128,18 @@ void system_spread_order(const orb_system *system, const int32_t *order, int32_t
             rows[filled++] = a;
 }
 
-/* One edge's four blocks. At p: w ((1 + C)/2 y + (1 - C)/2 a_p^2 conj y), likewise at q; mixed, from q to p:
- * -w ((1 + S)/2 a_p conj(a_q) y + (1 - S)/2 a_p a_q conj y), directions in the vertices' own frames. */
+/* One edge's four blocks, its directions at p and q in the vertices' own frames; where one of the two is mirrored, so is
+ * the sense of the perpendiculars, and S changes its sign. At p: w ((1 + C)/2 y + (1 - C)/2 a_p^2 conj y), likewise at q; mixed, from q to p:
+ * -w ((1 + S)/2 a_p conj(a_q) y + (1 - S)/2 a_p a_q conj y). */
 static void add_edge(orb_system *system, const orb_problem *problem, int32_t e, orb_edge_terms edge,
                      const double complex *turn) {
     int32_t u = problem->edges[2 * e], v = problem->edges[2 * e + 1];
     int32_t i = system->free_index[problem->copies->vertex[u]], j = system->free_index[problem->copies->vertex[v]];
     double w = problem->weights[e];
-    double complex p = conj(turn[u]) * edge.at_p, q = conj(turn[v]) * edge.at_q;
+    double complex p = problem_pull(problem, u, turn[u], edge.at_p), q = problem_pull(problem, v, turn[v], edge.at_q);
+    const orb_copies *copies = problem->copies;
+    if (copies->isometries[copies->isometry[u]].reflects != copies->isometries[copies->isometry[v]].reflects)
+        edge.S = -edge.S;
     double own = w * (1 + edge.C) / 2, own_bar = w * (1 - edge.C) / 2;
     double complex mixed = -w * (1 + edge.S) / 2 * p * conj(q), mixed_bar = -w * (1 - edge.S) / 2 * p * q;
     if (i >= 0)
@@ -162,7 +166,7 @@ static void add_edge(orb_system *system, const orb_problem *problem, int32_t e, 
 static void basis_of(const orb_system *system, const orb_problem *problem, const orb_point *position,
                      int32_t free_index, double complex basis[2]) {
     int32_t v = system->free_vertex[free_index];
-    basis[0] = problem->freedom[v] == 1 ? problem_direction(problem, position[v]) : 1;
+    basis[0] = problem->freedom[v] == 1 ? problem_direction(problem, v, position[v]) : 1;
     basis[1] = CMPLX(0, 1);
 }
 

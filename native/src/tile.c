@@ -1,8 +1,8 @@
-/* Tiles of spheres with cones. SPDX-License-Identifier: GPL-3.0-or-later
+/* SPDX-License-Identifier: GPL-3.0-or-later
  *
- * One construction serves all of them (docs/mathematics.md, section 4): the polygon with angles pi / n_i that has an
- * inscribed circle, doubled over its side c_k c_1. Everything is written with the curvature K as a number:
- * sin_K^2 = s stands for sin^2 r, r^2 or sinh^2 r, and cos_K r = sqrt(1 - K s). */
+ * One construction serves all (docs/mathematics.md, section 4): the polygon with given angles that has an inscribed
+ * circle. Everything is written with the curvature K as a number: sin_K^2 = s stands for sin^2 r, r^2 or sinh^2 r, and
+ * cos_K r = sqrt(1 - K s). */
 #include "tile.h"
 
 #include <math.h>
@@ -16,98 +16,234 @@ static double angle_at_centre(int K, double s, double half) {
     return atan2(cos(half), sqrt(fmax(0, sin(half) * sin(half) - K * s)));
 }
 
-static double excess_at_centre(int K, double s, int32_t k, const int32_t *orders) {
+static double excess_at_centre(int K, double s, int32_t n, const double *half) {
     double sum = -pi;
-    for (int32_t i = 0; i < k; i++)
-        sum += angle_at_centre(K, s, pi / (2 * orders[i]));
+    for (int32_t i = 0; i < n; i++)
+        sum += angle_at_centre(K, s, half[i]);
     return sum;
 }
 
 /* s = sin_K^2 of the inscribed circle's radius, to the last digit, by bisection: the angles at the centre must add up
- * to a full turn; their sum is monotone in s. In the plane any s will do, and the tile gets unit area. */
-static double inscribed_circle(int K, int32_t k, const int32_t *orders) {
+ * to a full turn; their sum is monotone in s. In the plane any s will do, and `images` polygons get unit area. */
+static double inscribed_circle(int K, int32_t n, const double *half, int images) {
     if (K == 0) {
-        double sum = 0; /* area of the doubled polygon: 2 r^2 sum of cot(half) */
-        for (int32_t i = 0; i < k; i++)
-            sum += 1 / tan(pi / (2 * orders[i]));
-        return 1 / (2 * sum);
+        double sum = 0; /* area of the polygon: r^2 sum of cot(half) */
+        for (int32_t i = 0; i < n; i++)
+            sum += 1 / tan(half[i]);
+        return 1 / (images * sum);
     }
     double low = 0, high = 1;
     if (K > 0) {
-        for (int32_t i = 0; i < k; i++) /* the circle must fit into every angle */
-            high = fmin(high, pow(sin(pi / (2 * orders[i])), 2));
+        for (int32_t i = 0; i < n; i++) /* the circle must fit into every angle */
+            high = fmin(high, sin(half[i]) * sin(half[i]));
     } else {
-        while (excess_at_centre(K, high, k, orders) > 0)
+        while (excess_at_centre(K, high, n, half) > 0)
             high *= 2;
     }
     for (;;) {
         double middle = low + (high - low) / 2;
         if (!(middle > low && middle < high))
             return high;
-        if (K * excess_at_centre(K, middle, k, orders) < 0)
+        if (K * excess_at_centre(K, middle, n, half) < 0)
             low = middle;
         else
             high = middle;
     }
 }
 
-/* Corners c_1 ... c_k counter-clockwise in the closed upper half plane, c_k and c_1 on the real axis left and right of
- * the origin, which is where the inscribed circle touches the side c_k c_1. `touch` [k]: the tangent points of the
- * sides c_i c_(i+1). */
-static void place_corners(const orb_geometry *geometry, int32_t k, const int32_t *orders, orb_point *corners,
-                          orb_point *touch) {
+/* Corners counter-clockwise about the origin, the inscribed circle's centre, after the tangent point in direction
+ * -pi / 2. `touch` [n]: the tangent points of the sides that start in the corners. Returns tan_K(r / 2). */
+static double place_corners(const orb_geometry *geometry, int32_t n, const double *half, int images,
+                            orb_point *corners, orb_point *touch) {
     int K = geometry_curvature(geometry);
-    double s = inscribed_circle(K, k, orders), cos_r = sqrt(1 - K * s), sin_r = sqrt(s);
-    double half_r = sin_r / (1 + cos_r), direction = -pi / 2; /* half_r = tan_K(r / 2) */
-    orb_isometry down = isometry_to_origin(geometry, point_of(CMPLX(0, -half_r)));
-    for (int32_t i = 0; i < k; i++) {
-        double half = pi / (2 * orders[i]), phi = angle_at_centre(K, s, half);
-        double sin_tau = sin_r / cos_r / tan(half), cos_tau = cos(phi) / sin(half); /* tau: corner to tangent point */
+    double s = inscribed_circle(K, n, half, images), cos_r = sqrt(1 - K * s), sin_r = sqrt(s);
+    double half_r = sin_r / (1 + cos_r), direction = -pi / 2;
+    for (int32_t i = 0; i < n; i++) {
+        double phi = angle_at_centre(K, s, half[i]);
+        double sin_tau = sin_r / cos_r / tan(half[i]), cos_tau = cos(phi) / sin(half[i]); /* tau: to tangent point */
         double radius = sin_tau / sin(phi) / (1 + cos_r * cos_tau); /* tan_K of half the corner's distance */
+        if (half[i] == pi / 2) /* no corner at all, but a point of a straight side; phi is 0 */
+            radius = half_r;
         direction += phi;
-        corners[i] = isometry_apply(geometry, down, point_of(radius * CMPLX(cos(direction), sin(direction))));
+        corners[i] = point_of(radius * CMPLX(cos(direction), sin(direction)));
         direction += phi;
-        touch[i] = isometry_apply(geometry, down, point_of(half_r * CMPLX(cos(direction), sin(direction))));
+        touch[i] = point_of(half_r * CMPLX(cos(direction), sin(direction)));
     }
-    corners[0] = point_of(creal(corners[0].z));
-    corners[k - 1] = point_of(creal(corners[k - 1].z));
+    return half_r;
 }
 
-orb_status tile_create(int curvature, int32_t n_cones, const int32_t *orders, orb_tile **result, orb_error *error) {
-    *result = NULL;
-    size_t k = (size_t)n_cones;
-    orb_status status = error_memory(error);
-    orb_point *touch = malloc(k * sizeof *touch);
-    orb_tile *tile = calloc(1, sizeof *tile);
-    if (!tile || !touch)
-        goto done;
-    tile->geometry = geometry_of_curvature(curvature);
-    tile->n_cones = tile->n_pairings = n_cones;
-    tile->rotates = n_cones == 2;
-    tile->deforms = curvature == 0 && n_cones == 4;
-    tile->orders = malloc(k * sizeof *tile->orders);
-    tile->corners = malloc((2 * k - 2) * sizeof *tile->corners);
-    tile->pairings = malloc(k * sizeof *tile->pairings);
-    tile->sides = malloc(k * sizeof *tile->sides);
-    if (!tile->orders || !tile->corners || !tile->pairings || !tile->sides)
-        goto done;
-    for (size_t i = 0; i < k; i++)
-        tile->orders[i] = orders[i];
-    place_corners(tile->geometry, n_cones, orders, tile->corners, touch);
-    for (size_t i = 1; i + 1 < k; i++)
-        tile->corners[2 * k - 2 - i] = point_conjugate(tile->corners[i]);
-    tile->pairings[0] = isometry_identity();
-    for (size_t s = 1; s < k; s++) {
-        /* The poles of a lune are antipodal and give no direction: there, the tangent point of the side does. */
-        orb_point p = tile->corners[s - 1], q = k > 2 ? tile->corners[s] : touch[s - 1];
-        tile->sides[s - 1] = (k > 2 ? 1 : 2) * geometry_log(tile->geometry, p, q);
-        tile->pairings[s] = isometry_pairing(tile->geometry, p, q, point_conjugate(p), point_conjugate(q));
+/* The polygon with angles pi / n_i, moved so that its side c_k c_1 is on the real axis, its tangent point at the
+ * origin, and doubled over that side. */
+static void place_doubled(orb_tile *tile, double *half, orb_point *touch) {
+    const orb_geometry *geometry = tile->geometry;
+    int32_t k = tile->word->n_nodes, n = tile->word->n_sides;
+    for (int32_t i = 0; i < k; i++)
+        half[i] = pi / (2.0 * tile->word->order[i]);
+    double half_r = place_corners(geometry, k, half, 2, tile->corners, touch);
+    orb_isometry down = isometry_to_origin(geometry, point_of(CMPLX(0, -half_r)));
+    for (int32_t i = 0; i < k; i++) {
+        tile->corners[i] = isometry_apply(geometry, down, tile->corners[i]);
+        touch[i] = isometry_apply(geometry, down, touch[i]);
     }
-    status = error_set(error, ORB_OK, "%s", "");
+    tile->corners[0] = point_of(creal(tile->corners[0].z));
+    tile->corners[k - 1] = point_of(creal(tile->corners[k - 1].z));
+    for (int32_t i = k; i < n; i++)
+        tile->corners[i] = point_conjugate(tile->corners[n - i]);
+    for (int32_t i = k - 1; i < n; i++)
+        touch[i] = point_conjugate(touch[n - 1 - i]);
+}
+
+/* The ends of a lune are antipodal and give no direction: there, `touch`, a point within the side, does. */
+static void glue_sides(orb_tile *tile, const orb_point *touch) {
+    const orb_geometry *geometry = tile->geometry;
+    const orb_word *word = tile->word;
+    for (int32_t s = 0; s < word->n_sides; s++) {
+        int32_t partner = word->partner[s], next = word_next(word, s);
+        orb_point p = tile->corners[s], q = tile->corners[next];
+        orb_point p1 = tile->corners[word_glued_start(word, s)], q1 = tile->corners[word_glued_end(word, s)];
+        tile->sides[s] = geometry_log(geometry, p, q);
+        if (touch && geometry_is_antipodal(geometry, p, q)) {
+            tile->sides[s] = 2 * geometry_log(geometry, p, touch[s]);
+            q = touch[s];
+            q1 = touch[partner];
+        }
+        tile->pairings[s] =
+            (word->same_way[s] ? isometry_reflection : isometry_pairing)(geometry, p, q, p1, q1);
+        tile->lines[s] = isometry_pairing(geometry, point_of(0), point_of(0.5), p, q);
+    }
+}
+
+/* Walks round each node from its first corner, across one side after the other. */
+static void find_elements(orb_tile *tile, int32_t *queue, bool *known) {
+    const orb_word *word = tile->word;
+    int32_t head = 0, tail = 0;
+    for (int32_t n = 0; n < word->n_nodes; n++) {
+        tile->elements[word->first[n]] = isometry_identity();
+        known[word->first[n]] = true;
+        queue[tail++] = word->first[n];
+    }
+    while (head < tail) {
+        int32_t c = queue[head++], before = word_previous(word, c);
+        const int32_t side[2] = {c, before}, to[2] = {word_glued_start(word, c), word_glued_end(word, before)};
+        for (int k = 0; k < 2; k++) {
+            if (word_is_mirror(word, side[k]) || known[to[k]])
+                continue;
+            tile->elements[to[k]] =
+                isometry_compose(tile->geometry, tile->pairings[side[k]], tile->elements[c]);
+            known[to[k]] = true;
+            queue[tail++] = to[k];
+        }
+    }
+}
+
+static orb_status glue(orb_tile *tile, const orb_point *touch, orb_error *error) {
+    size_t n = (size_t)tile->word->n_sides;
+    int32_t *queue = malloc((n + 1) * sizeof *queue);
+    bool *known = calloc(n + 1, sizeof *known);
+    if (queue && known) {
+        glue_sides(tile, touch);
+        find_elements(tile, queue, known);
+    }
+    orb_status status = queue && known ? ORB_OK : error_memory(error);
+    free(queue);
+    free(known);
+    return status;
+}
+
+static orb_status tile_allocate(const orb_word *word, int curvature, orb_tile **result, orb_error *error) {
+    orb_tile *tile = calloc(1, sizeof *tile);
+    *result = tile;
+    if (!tile)
+        return error_memory(error);
+    size_t n = (size_t)word->n_sides + 1;
+    tile->geometry = geometry_of_curvature(curvature);
+    tile->corners = malloc(n * sizeof *tile->corners);
+    tile->sides = malloc(n * sizeof *tile->sides);
+    tile->pairings = malloc(n * sizeof *tile->pairings);
+    tile->lines = malloc(n * sizeof *tile->lines);
+    tile->elements = malloc(n * sizeof *tile->elements);
+    if (!tile->corners || !tile->sides || !tile->pairings || !tile->lines || !tile->elements)
+        return error_memory(error);
+    return word_copy(word, &tile->word, error);
+}
+
+/* Gauss and Bonnet: the excess, or defect, of the angles over those of a flat polygon. */
+static double area_of_angles(const orb_tile *tile) {
+    int32_t n = tile->word->n_sides;
+    double sum = -(n - 2) * pi;
+    for (int32_t c = 0; c < n; c++)
+        sum += tile_angle(tile, c);
+    return fabs(sum);
+}
+
+double tile_angle(const orb_tile *tile, int32_t corner) {
+    if (!tile->fixed)
+        return word_angle(tile->word, corner);
+    orb_point p = tile->corners[corner];
+    double complex next = geometry_toward(tile->geometry, p, tile->corners[word_next(tile->word, corner)]);
+    double complex last = geometry_toward(tile->geometry, p, tile->corners[word_previous(tile->word, corner)]);
+    return carg(conj(next) * last);
+}
+
+orb_status tile_create(const orb_word *word, int curvature, orb_tile **result, orb_error *error) {
+    *result = NULL;
+    orb_tile *tile = NULL;
+    size_t n = (size_t)word->n_sides + 1;
+    orb_point *touch = malloc(n * sizeof *touch);
+    double *half = calloc(n + (size_t)word->n_nodes, sizeof *half);
+    orb_status status = touch && half ? tile_allocate(word, curvature, &tile, error) : error_memory(error);
+    if (status != ORB_OK)
+        goto done;
+    if (word_is_path(word)) {
+        place_doubled(tile, half, touch);
+    } else {
+        for (int32_t c = 0; c < word->n_sides; c++)
+            half[c] = word_angle(word, c) / 2;
+        place_corners(tile->geometry, word->n_sides, half, 1, tile->corners, touch);
+    }
+    tile->area = curvature == 0 ? 1 : area_of_angles(tile);
+    status = glue(tile, touch, error);
+    if (status != ORB_OK)
+        goto done;
+    *result = tile;
+    tile = NULL;
+    error_set(error, ORB_OK, "%s", "");
+done:
+    free(half);
+    free(touch);
+    tile_free(tile);
+    return status;
+}
+
+orb_status tile_of_polygon(int curvature, int32_t n, const orb_point *corners, orb_tile **result, orb_error *error) {
+    *result = NULL;
+    orb_word *word = NULL;
+    orb_tile *tile = NULL;
+    orb_status status = word_create(n, n, &word, error);
+    if (status != ORB_OK)
+        return status;
+    for (int32_t s = 0; s < n; s++) {
+        word->node[s] = word->partner[s] = s;
+        word->same_way[s] = true;
+        word->order[s] = 1;
+    }
+    word_finish(word);
+    status = tile_allocate(word, curvature, &tile, error);
+    word_free(word);
+    if (status != ORB_OK)
+        goto done;
+    tile->fixed = true;
+    for (int32_t s = 0; s < n; s++)
+        tile->corners[s] = corners[s];
+    for (int32_t s = 1; s + 1 < n; s++)
+        tile->area += geometry_triangle_area(tile->geometry, geometry_toward(tile->geometry, corners[0], corners[s]),
+                                             geometry_toward(tile->geometry, corners[0], corners[s + 1]));
+    status = glue(tile, NULL, error);
+    if (status != ORB_OK)
+        goto done;
     *result = tile;
     tile = NULL;
 done:
-    free(touch);
     tile_free(tile);
     return status;
 }
@@ -115,14 +251,11 @@ done:
 void tile_free(orb_tile *tile) {
     if (!tile)
         return;
-    free(tile->orders);
+    word_free(tile->word);
     free(tile->corners);
-    free(tile->pairings);
     free(tile->sides);
+    free(tile->pairings);
+    free(tile->lines);
+    free(tile->elements);
     free(tile);
-}
-
-double tile_area(const orb_tile *tile, double euler) {
-    int K = geometry_curvature(tile->geometry);
-    return K == 0 ? 1 : 2 * pi * euler * K;
 }

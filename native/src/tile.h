@@ -1,29 +1,35 @@
-/* Orders -> a polygon whose sides are glued in pairs. SPDX-License-Identifier: GPL-3.0-or-later */
+/* Boundary word -> a polygon whose sides are glued by isometries. SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef ORB_TILE_H
 #define ORB_TILE_H
 
 #include "geometry.h"
-#include "error.h"
+#include "word.h"
 
-/* The tile of a sphere with cones c_1 ... c_k, cut along a path c_1 -> ... -> c_k. Its boundary, counter-clockwise:
- * c_1, ..., c_k on the left bank of the path, then c_(k-1), ..., c_2 on its right bank. Segment s (from 1) of the
- * path joins c_s to c_(s+1); pairing s takes its left bank to its right bank. Pairing 0 is the identity. */
+/* Corner s is where side s starts; counter-clockwise. Pairing s takes side s to its partner and the tile to the other
+ * side of that; a mirror's is the reflection in it. */
 typedef struct orb_tile {
     const orb_geometry *geometry;
-    int32_t n_cones;
-    int32_t *orders;        /* [n_cones] */
-    orb_point *corners;     /* [2*n_cones - 2] counter-clockwise, as above */
-    int32_t n_pairings;     /* n_cones: the identity and one for each segment */
-    orb_isometry *pairings; /* [n_pairings] */
-    double complex *sides;  /* [n_cones-1] the vector along the side c_s c_(s+1) of the left bank, at c_s */
-    bool rotates;           /* a free rotation about c_1 (two cones) */
-    bool deforms;           /* the tile has an affine modulus, found after the solve (2222) */
+    orb_word *word;
+    orb_point *corners;      /* [n_sides] */
+    double complex *sides;   /* [n_sides] the vector along side s, at corner s */
+    orb_isometry *pairings;  /* [n_sides] */
+    orb_isometry *lines;     /* [n_sides] takes the real axis to the geodesic of side s, the origin to corner s */
+    orb_isometry *elements;  /* [n_sides] corner s is this element's image of its node's first corner */
+    double area;             /* 2 pi |chi| (Gauss and Bonnet), 1 in the plane; of a fixed polygon its own */
+    bool fixed;              /* a polygon whose boundary does not move, no orbifold's tile */
 } orb_tile;
 
-orb_status tile_create(int curvature, int32_t n_cones, const int32_t *orders, orb_tile **tile, orb_error *error);
+/* The polygon with the word's angles that has an inscribed circle, about the origin; a sphere cut along a path gets
+ * the polygon with angles pi / n_i doubled (2016, section 4). Exists and is unique for all words of good orbifolds of
+ * the sphere, up to scale in the plane, and in the hyperbolic plane (docs/mathematics.md, section 4). */
+orb_status tile_create(const orb_word *word, int curvature, orb_tile **tile, orb_error *error);
+
+/* A convex polygon with these corners, counter-clockwise, whose boundary does not move: every side is fixed. */
+orb_status tile_of_polygon(int curvature, int32_t n, const orb_point *corners, orb_tile **tile, orb_error *error);
+
 void tile_free(orb_tile *tile);
 
-/* Area of the tile: 2 pi |chi| by Gauss and Bonnet, and 1 in the plane. */
-double tile_area(const orb_tile *tile, double euler);
+/* Interior angle at a corner, of the word's or, for a fixed polygon, its own. */
+double tile_angle(const orb_tile *tile, int32_t corner);
 
 #endif

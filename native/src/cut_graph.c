@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+#include "cut_graph.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct candidate {
+    double length; /* of the loop that the edge closes */
+    int32_t edge;
+} candidate;
+
+typedef struct worker {
+    const orb_mesh *mesh;
+    const int32_t *parent;
+    uint8_t *cut;
+    int32_t *first, *incident; /* the edges at vertex v: incident[first[v]] ... incident[first[v + 1] - 1] */
+    double *distance;          /* [n_vertices] */
+    int32_t *tree;             /* [n_vertices] the edge towards the root; -1 */
+    int32_t *heap, *slot;      /* [n_vertices] */
+    int32_t n_heap;
+    int32_t *set; /* [n_triangles] union-find */
+    candidate *candidates;
+} worker;
+
+static void worker_free(worker *w) {
+    free(w->first);
+    free(w->incident);
+    free(w->distance);
+    free(w->tree);
+    free(w->heap);
+    free(w->slot);
+    free(w->set);
+    free(w->candidates);
+}
+
+static bool worker_allocate(worker *w) {
+    size_t n = (size_t)w->mesh->n_vertices + 2, edges = (size_t)w->mesh->n_edges + 1;
+    w->first = calloc(n, sizeof *w->first);
+    w->incident = malloc(2 * edges * sizeof *w->incident);
+    w->distance = malloc(n * sizeof *w->distance);
+    w->tree = malloc(n * sizeof *w->tree);
+    w->heap = malloc(n * sizeof *w->heap);
+    w->slot = malloc(n * sizeof *w->slot);
+    w->set = malloc(((size_t)w->mesh->n_triangles + 1) * sizeof *w->set);
+    w->candidates = malloc(edges * sizeof *w->candidates);
+    return w->first && w->incident && w->distance && w->tree && w->heap && w->slot && w->set && w->candidates;
+}
+
+static int32_t edge_end(const orb_mesh *mesh, int32_t edge, int side) {
+    int32_t h = mesh->edge_halfedge[edge];
+    return side ? halfedge_to(mesh, h) : halfedge_from(mesh, h);
+}
+
+static bool is_border(const orb_mesh *mesh, int32_t edge) { return mesh->twin[mesh->edge_halfedge[edge]] < 0; }
+
+/* Within one triangle of which both sides are parts: neither cut nor walked along. */
+static bool is_inner(const worker *w, int32_t edge) {
+    int32_t h = w->mesh->edge_halfedge[edge], g = w->mesh->twin[h];
+    return w->parent && g >= 0 && w->parent[h / 3] >= 0 && w->parent[h / 3] == w->parent[g / 3];
+}
+
+static void list_incident_edges(worker *w) {
+    const orb_mesh *mesh = w->mesh;
+    for (int32_t e = 0; e < mesh->n_edges; e++)
+        for (int side = 0; side < 2; side++)
+            w->first[edge_end(mesh, e, side) + 2]++;
+    for (int32_t v = 2; v < mesh->n_vertices + 2; v++)
+        w->first[v] += w->first[v - 1];
+    for (int32_t e = 0; e < mesh->n_edges; e++)
+        for (int side = 0; side < 2; side++)
+            w->incident[w->first[edge_end(mesh, e, side) + 1]++] = e;
+}
+
+/* --- shortest paths from the root ------------------------------------------------------------------------------ */
+
+static bool comes_before(const worker *w, int32_t a, int32_t b) {
+    return w->distance[a] < w->distance[b] || (w->distance[a] == w->distance[b] && a < b);
+}
+
+static void heap_put(worker *w, int32_t slot, int32_t vertex) {
+    w->heap[slot] = vertex;
+    w->slot[vertex] = slot;
+}
+
+static void heap_raise(worker *w, int32_t vertex) {
+    int32_t slot = w->slot[vertex];
+    for (; slot > 0 && comes_before(w, vertex, w->heap[(slot - 1) / 2]); slot = (slot - 1) / 2)
+        heap_put(w, slot, w->heap[(slot - 1) / 2]);
+    heap_put(w, slot, vertex);
+}
+
+static int32_t heap_take(worker *w) {
+    int32_t first = w->heap[0], last = w->heap[--w->n_heap], slot = 0;
+    for (int32_t child = 1; child < w->n_heap; child = 2 * slot + 1) {
+        if (child + 1 < w->n_heap && comes_before(w, w->heap[child + 1], w->heap[child]))
+            child++;
+        if (!comes_before(w, w->heap[child], last))
+            break;
+        heap_put(w, slot, w->heap[child]);
+        slot = child;
+    }
+    if (w->n_heap > 0)
+        heap_put(w, slot, last);
+    w->slot[first] = -2;
+    return first;
+}
+
+/* Dijkstra's tree; the boundary is cut in any case, and costs nothing. */
+static void grow_tree(worker *w, int32_t root) {
+    for (int32_t v = 0; v < w->mesh->n_vertices; v++) {
+        w->distance[v] = INFINITY;
+        w->tree[v] = w->slot[v] = -1;
+    }
+    w->distance[root] = 0;
+    heap_put(w, w->n_heap++, root);
+    while (w->n_heap > 0) {
+        int32_t v = heap_take(w);
+        for (int32_t k = w->first[v]; k < w->first[v + 1]; k++) {
+            int32_t e = w->incident[k], a = edge_end(w->mesh, e, 0), u = a == v ? edge_end(w->mesh, e, 1) : a;
+            if (w->slot[u] == -2 || is_inner(w, e))
+                continue;
+            double length = is_border(w->mesh, e) ? 0 : mesh_edge_length(w->mesh, w->mesh->edge_halfedge[e]);
+            double d = w->distance[v] + length;
+            if (w->slot[u] >= 0 && !(d < w->distance[u]))
+                continue;
+            w->distance[u] = d;
+            w->tree[u] = e;
+            if (w->slot[u] < 0)
+                heap_put(w, w->n_heap++, u);
+            heap_raise(w, u);
+        }
+    }
+}
+
+/* --- the tree of triangles that avoids it ----------------------------------------------------------------------- */
+
+static int32_t find(int32_t *set, int32_t t) {
+    while (set[t] != t)
+        t = set[t] = set[set[t]];
+    return t;
+}
+
+/* Joins the triangles on both sides of the edge; false if they were joined. */
+static bool join(worker *w, int32_t edge) {
+    int32_t h = w->mesh->edge_halfedge[edge];
+    int32_t a = find(w->set, h / 3), b = find(w->set, w->mesh->twin[h] / 3);
+    w->set[a] = b;
+    return a != b;
+}
+
+static int longest_first(const void *a, const void *b) {
+    const candidate *x = a, *y = b;
+    if (x->length != y->length)
+        return x->length < y->length ? 1 : -1;
+    return (x->edge > y->edge) - (x->edge < y->edge);
+}
+
+/* Marks as cut what the tree of triangles does not cross: it crosses the edges with the longest loops. */
+static void grow_cotree(worker *w) {
+    const orb_mesh *mesh = w->mesh;
+    int32_t n = 0;
+    for (int32_t t = 0; t < mesh->n_triangles; t++)
+        w->set[t] = t;
+    memset(w->cut, 1, (size_t)mesh->n_edges);
+    for (int32_t e = 0; e < mesh->n_edges; e++) {
+        int32_t a = edge_end(mesh, e, 0), b = edge_end(mesh, e, 1);
+        if (is_inner(w, e)) {
+            join(w, e);
+            w->cut[e] = 0;
+        } else if (!is_border(mesh, e) && w->tree[a] != e && w->tree[b] != e) {
+            double length = mesh_edge_length(mesh, mesh->edge_halfedge[e]);
+            w->candidates[n++] = (candidate){w->distance[a] + w->distance[b] + length, e};
+        }
+    }
+    bool simply_connected = mesh->euler + mesh->n_boundary_loops == 2; /* every loop bounds: no need to sort */
+    if (!simply_connected)
+        qsort(w->candidates, (size_t)n, sizeof *w->candidates, longest_first);
+    for (int32_t k = 0; k < n; k++)
+        if (join(w, w->candidates[k].edge))
+            w->cut[w->candidates[k].edge] = 0;
+}
+
+/* Takes loose ends away; `slot` counts the cut edges at a vertex, `heap` is a stack. */
+static void prune(worker *w, int32_t n_cones, const int32_t *cones) {
+    const orb_mesh *mesh = w->mesh;
+    int32_t *degree = w->slot, height = 0;
+    memset(degree, 0, (size_t)mesh->n_vertices * sizeof *degree);
+    for (int32_t e = 0; e < mesh->n_edges; e++)
+        for (int side = 0; side < 2; side++)
+            degree[edge_end(mesh, e, side)] += w->cut[e];
+    for (int32_t c = 0; c < n_cones; c++)
+        degree[cones[c]] += 2; /* never loose */
+    for (int32_t v = 0; v < mesh->n_vertices; v++)
+        if (degree[v] == 1)
+            w->heap[height++] = v;
+    while (height > 0) {
+        int32_t v = w->heap[--height];
+        if (degree[v] != 1)
+            continue;
+        for (int32_t k = w->first[v]; k < w->first[v + 1]; k++) {
+            int32_t e = w->incident[k], a = edge_end(mesh, e, 0), u = a == v ? edge_end(mesh, e, 1) : a;
+            if (!w->cut[e])
+                continue;
+            w->cut[e] = 0;
+            degree[v]--;
+            if (--degree[u] == 1)
+                w->heap[height++] = u;
+        }
+    }
+}
+
+static int32_t find_root(const orb_mesh *mesh, int32_t n_cones, const int32_t *cones) {
+    for (int32_t e = 0; e < mesh->n_edges && mesh->n_boundary_loops > 0; e++)
+        if (is_border(mesh, e))
+            return edge_end(mesh, e, 0);
+    return n_cones > 0 ? cones[0] : mesh->triangles[0];
+}
+
+orb_status cut_graph_find(const orb_mesh *mesh, const int32_t *parent, int32_t n_cones, const int32_t *cones,
+                          uint8_t *cut, orb_error *error) {
+    worker w = {.mesh = mesh, .parent = parent, .cut = cut};
+    orb_status status = ORB_OK;
+    if (worker_allocate(&w)) {
+        list_incident_edges(&w);
+        grow_tree(&w, find_root(mesh, n_cones, cones));
+        grow_cotree(&w);
+        prune(&w, n_cones, cones);
+    } else {
+        status = error_memory(error);
+    }
+    worker_free(&w);
+    return status;
+}
