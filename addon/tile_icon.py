@@ -10,7 +10,7 @@ from . import core, group
 
 STEPS = 24  # of a side
 MARGIN = 0.12  # of the image
-THIN, THICK = 0.022, 0.055  # half the width of a line, of the image
+THIN, THICK = 0.018, 0.045  # half the width of a line, of the image
 COLOURS = {1: (0.93, 0.62, 0.31), 0: (0.42, 0.68, 0.93), -1: (0.56, 0.80, 0.45)}  # by curvature
 LINE = (0.93, 0.93, 0.93)
 FARTHEST = 6.0  # in the stereographic chart: what lies near the point opposite to the middle is cut off

@@ -94,7 +94,7 @@ class Result:
             "cones": self.cones,
             "orders": self.orders,
         }
-        if self.weights is not None:
+        if self.weights is not None and self.report["mesh"]["orientable"]:  # a reader walks round vertices one way
             arrays["weights"] = self.weights
         if self.embedding_low.any():
             arrays["embedding_low"] = self.embedding_low
