@@ -74,8 +74,15 @@ static void list_incident_edges(worker *w) {
 
 /* --- shortest paths from the root ------------------------------------------------------------------------------ */
 
+static bool by_border(const worker *w, int32_t v) { return w->tree[v] >= 0 && is_border(w->mesh, w->tree[v]); }
+
+/* Of equally near ones those come first that are reached along the boundary: once a path has come to a boundary loop
+ * all of that belongs to the tree but one edge, before a second path can come to it. */
 static bool comes_before(const worker *w, int32_t a, int32_t b) {
-    return w->distance[a] < w->distance[b] || (w->distance[a] == w->distance[b] && a < b);
+    if (w->distance[a] != w->distance[b])
+        return w->distance[a] < w->distance[b];
+    bool border_a = by_border(w, a), border_b = by_border(w, b);
+    return border_a != border_b ? border_a : a < b;
 }
 
 static void heap_put(worker *w, int32_t slot, int32_t vertex) {
@@ -120,9 +127,10 @@ static void grow_tree(worker *w, int32_t root) {
             int32_t e = w->incident[k], a = edge_end(w->mesh, e, 0), u = a == v ? edge_end(w->mesh, e, 1) : a;
             if (w->slot[u] == -2 || is_inner(w, e))
                 continue;
-            double length = is_border(w->mesh, e) ? 0 : mesh_edge_length(w->mesh, w->mesh->edge_halfedge[e]);
-            double d = w->distance[v] + length;
-            if (w->slot[u] >= 0 && !(d < w->distance[u]))
+            bool border = is_border(w->mesh, e);
+            double d = w->distance[v] + (border ? 0 : mesh_edge_length(w->mesh, w->mesh->edge_halfedge[e]));
+            bool nearer = d < w->distance[u] || (d == w->distance[u] && border && !by_border(w, u));
+            if (w->slot[u] >= 0 && !nearer)
                 continue;
             w->distance[u] = d;
             w->tree[u] = e;

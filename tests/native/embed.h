@@ -2,8 +2,10 @@
 #ifndef EMBED_H
 #define EMBED_H
 
+#include "cut.h"
 #include "embedding.h"
 #include "meshes.h"
+#include "problem.h"
 #include "random.h"
 
 static inline orb_status embed(const sample_mesh *mesh, const char *signature, int32_t n_cones, const int32_t *cones,
@@ -28,6 +30,23 @@ static inline void pick_cones(random_state *state, int32_t n_vertices, int32_t k
                 taken = taken || cones[j] == cones[i];
         }
     }
+}
+
+/* The problem that an embedding solved, set up once more; it borrows the embedding's arrays. */
+static inline orb_status problem_of(orb_embedding *embedding, orb_problem **problem, orb_error *error) {
+    const orb_signature *s = embedding->surface->signature;
+    orb_disk *disk = NULL;
+    orb_marks marks = surface_marks(embedding->surface);
+    bool sphere = s->n_mirrors + s->n_crosscaps + s->n_handles == 0;
+    orb_status status = sphere ? cut_path(embedding->mesh, &marks, &disk, error)
+                               : cut_surface(embedding->mesh, embedding->surface->parent, &marks, -1, &disk, error);
+    if (status == ORB_OK)
+        status = problem_create(embedding->mesh, embedding->copies, disk, embedding->tile, embedding->weights, problem,
+                                error);
+    if (status == ORB_OK)
+        problem_aim(*problem, embedding->position);
+    disk_free(disk);
+    return status;
 }
 
 #endif

@@ -6,6 +6,7 @@
 #include "embedding.h"
 #include "lattice.h"
 #include "layout.h"
+#include "tiles.h"
 
 static double uniform(unsigned *state) {
     *state = *state * 1664525u + 1013904223u;
@@ -26,7 +27,7 @@ typedef struct sample {
 static int sample_create(sample *s, int curvature, int32_t k, const int32_t *orders, int32_t n) {
     memset(s, 0, sizeof *s);
     orb_error error;
-    if (tile_create(curvature, k, orders, &s->embedding.tile, &error) != ORB_OK)
+    if (tile_of_cones(curvature, k, orders, &s->embedding.tile, &error) != ORB_OK)
         return 0;
     s->n = n;
     s->mesh.n_triangles = n;
@@ -69,7 +70,7 @@ enum { N_PLANES = sizeof planes / sizeof *planes };
 
 /* The area of the tile in the coordinate 2 z. */
 static double double_area(const orb_tile *tile) {
-    int32_t n = 2 * tile->n_cones - 2;
+    int32_t n = tile->word->n_sides;
     double sum = 0;
     for (int32_t i = 0; i < n; i++)
         sum += 2 * cimag(conj(tile->corners[i].z) * tile->corners[(i + 1) % n].z);
@@ -78,15 +79,15 @@ static double double_area(const orb_tile *tile) {
 
 /* The tile's corners and pairings under z -> x + (shear + stretch i) y, which commutes with half turns. */
 static void deform(orb_tile *tile, double shear, double stretch) {
-    int32_t k = tile->n_cones;
-    for (int32_t i = 0; i < 2 * k - 2; i++) {
+    int32_t n = tile->word->n_sides;
+    for (int32_t i = 0; i < n; i++) {
         double complex z = tile->corners[i].z;
         tile->corners[i] = point_of(complex_of(creal(z) + shear * cimag(z), stretch * cimag(z)));
     }
-    for (int32_t s = 1; s < k; s++)
-        tile->pairings[s] =
-            isometry_pairing(tile->geometry, tile->corners[s - 1], tile->corners[s],
-                             tile->corners[(2 * k - 2 - (s - 1)) % (2 * k - 2)], tile->corners[2 * k - 2 - s]);
+    for (int32_t s = 0; s < n; s++)
+        tile->pairings[s] = isometry_pairing(tile->geometry, tile->corners[s], tile->corners[(s + 1) % n],
+                                             tile->corners[word_glued_start(tile->word, s)],
+                                             tile->corners[word_glued_end(tile->word, s)]);
 }
 
 /* UV is an affine function of position that keeps orientation; every product of pairings without rotation moves it by
@@ -95,12 +96,13 @@ static void check_cell(const orb_tile *tile, double *shear) {
     orb_error error;
     orb_cell cell;
     REQUIRE(lattice_cell(tile, &cell, &error) == ORB_OK);
-    double complex basis[2];
+    double complex basis[2], axis;
     int rotations;
-    REQUIRE(lattice_create(tile, basis, &rotations, &error) == ORB_OK);
+    REQUIRE(lattice_create(tile, basis, &rotations, &axis, &error) == ORB_OK);
+    CHECK(axis == 0);
     int32_t top = 0;
-    for (int32_t i = 0; i < tile->n_cones; i++)
-        top = tile->orders[i] > top ? tile->orders[i] : top;
+    for (int32_t i = 0; i < tile->word->n_nodes; i++)
+        top = tile->word->order[i] > top ? tile->word->order[i] : top;
     CHECK(rotations == top);
     int cells = top % 3 == 0 ? 2 : 1;
     double area = cimag(conj(cell.side[0]) * cell.side[1]);
@@ -118,7 +120,7 @@ static void check_cell(const orb_tile *tile, double *shear) {
     for (int word = 0; word < 4000; word++) {
         orb_isometry g = isometry_identity();
         for (int letter = 0; letter < 6; letter++) {
-            int s = 1 + (int)(uniform(&state) * (tile->n_cones - 1));
+            int s = (int)(uniform(&state) * tile->word->n_sides);
             orb_isometry h = tile->pairings[s];
             g = isometry_compose(tile->geometry, uniform(&state) < 0.5 ? h : isometry_inverse(h), g);
         }
@@ -141,7 +143,7 @@ TEST(lattice_of_every_plane_signature) {
     for (int i = 0; i < N_PLANES; i++) {
         orb_tile *tile = NULL;
         orb_error error;
-        REQUIRE(tile_create(0, planes[i].k, planes[i].orders, &tile, &error) == ORB_OK);
+        REQUIRE(tile_of_cones(0, planes[i].k, planes[i].orders, &tile, &error) == ORB_OK);
         double shear = 0;
         check_cell(tile, &shear);
         CHECK_NEAR(shear, 0, 1e-12); /* right angles, 2222 included: its tile before the affine step is a rectangle */
@@ -154,7 +156,7 @@ TEST(lattice_of_sheared_2222_is_reduced) {
         int32_t orders[4] = {2, 2, 2, 2};
         orb_tile *tile = NULL;
         orb_error error;
-        REQUIRE(tile_create(0, 4, orders, &tile, &error) == ORB_OK);
+        REQUIRE(tile_of_cones(0, 4, orders, &tile, &error) == ORB_OK);
         deform(tile, 0.37 * i - 5, i % 2 ? 0.2 + 0.1 * i : 3);
         double shear = 0;
         check_cell(tile, &shear);
@@ -180,19 +182,19 @@ TEST(texels_meet_texels_in_442_and_2222) {
             continue;
         orb_tile *tile = NULL;
         orb_error error;
-        REQUIRE(tile_create(0, planes[i].k, planes[i].orders, &tile, &error) == ORB_OK);
-        if (tile->n_cones == 4)
+        REQUIRE(tile_of_cones(0, planes[i].k, planes[i].orders, &tile, &error) == ORB_OK);
+        if (tile->word->n_nodes == 4)
             deform(tile, 0.4, 1.7);
         orb_cell cell;
         REQUIRE(lattice_cell(tile, &cell, &error) == ORB_OK);
-        for (int32_t c = 0; c < tile->n_cones; c++)
-            if (tile->orders[c] == 4 || tile->n_cones == 4) {
+        for (int32_t c = 0; c < tile->word->n_nodes; c++)
+            if (tile->word->order[c] == 4 || tile->word->n_nodes == 4) {
                 double complex uv = 2 * lattice_coordinates(&cell, tile->corners[c]);
                 CHECK_NEAR(creal(uv), round(creal(uv)), 1e-12);
                 CHECK_NEAR(cimag(uv), round(cimag(uv)), 1e-12);
             }
         for (int n = 2; n <= 64; n *= 2)
-            for (int32_t s = 1; s < tile->n_pairings; s++) {
+            for (int32_t s = 0; s < tile->word->n_sides; s++) {
                 double complex texel = complex_of(1.5, 0.5 + n / 2) / n; /* its centre in UV, then in z */
                 double complex z = cell.origin.z + (creal(texel) * cell.side[0] + cimag(texel) * cell.side[1]) / 2;
                 orb_point q = isometry_apply(tile->geometry, tile->pairings[s], point_of(z));

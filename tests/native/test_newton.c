@@ -18,10 +18,7 @@ static void check_derivatives(const char *signature, int32_t k) {
     orb_system *system = NULL;
     orb_error error;
     REQUIRE(embed(&mesh, signature, k, cones, 0.01, &embedding, &error) == ORB_OK);
-    REQUIRE(problem_create(embedding->mesh, embedding->copies, embedding->tile, cones, embedding->weights, &problem,
-                           &error) == ORB_OK);
-    if (k == 2)
-        problem_hold_rotation(problem, 0, embedding->tile->corners[0]);
+    REQUIRE(problem_of(embedding, &problem, &error) == ORB_OK);
     REQUIRE(system_create(problem, false, &system, &error) == ORB_OK);
     size_t n = (size_t)mesh.n_vertices, copies = (size_t)embedding->copies->n_copies;
     double complex *turn = malloc(copies * sizeof *turn), *along = calloc(n, sizeof *along);
@@ -34,7 +31,7 @@ static void check_derivatives(const char *signature, int32_t k) {
             embedding->position[v] = geometry_exp(problem->geometry, embedding->position[v], push);
         along[v] = random_unit(&state) - 0.5 + I * (random_unit(&state) - 0.5);
         if (problem->freedom[v] == 1)
-            along[v] = problem_direction(problem, embedding->position[v]);
+            along[v] = problem_direction(problem, (int32_t)v, embedding->position[v]);
         if (problem->freedom[v] == 0)
             along[v] = 0;
     }
@@ -120,10 +117,7 @@ static void check_both_systems(const char *signature, int32_t k) {
     orb_problem *problem = NULL;
     orb_error error;
     REQUIRE(embed(&mesh, signature, k, cones, 0.01, &embedding, &error) == ORB_OK);
-    REQUIRE(problem_create(embedding->mesh, embedding->copies, embedding->tile, cones, embedding->weights, &problem,
-                           &error) == ORB_OK);
-    if (embedding->tile->rotates) /* the same vertex on the same meridian, or the two may differ by a rotation */
-        problem_hold_rotation(problem, cones[0] == 5 ? 6 : 5, embedding->tile->corners[0]);
+    REQUIRE(problem_of(embedding, &problem, &error) == ORB_OK);
     orb_minimum exact = {0}, complex_part = {0};
     CHECK_NEAR(way_back(embedding, problem, false, &exact), 0, 1e-9);
     CHECK_NEAR(way_back(embedding, problem, true, &complex_part), 0, 1e-9);

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "check.h"
-#include "signature.h"
+#include "picks.h"
 
 static void check_read(const char *text, int curvature, double euler, int32_t n_cones, bool supported) {
     orb_signature_info info;
@@ -25,13 +25,15 @@ TEST(euler_characteristic_and_geometry) {
     check_read("77", 1, 2.0 / 7, 2, true);
     check_read("237", -1, -1.0 / 42, 3, true);
     check_read("22222", -1, -0.5, 5, true);
-    check_read("*237", -1, -1.0 / 84, 3, false);
-    check_read("4*2", 0, 0, 2, false);
-    check_read("o", 0, 0, 0, false);
-    check_read("**", 0, 0, 0, false);
-    check_read("22x", 0, 0, 2, false);
+    check_read("*237", -1, -1.0 / 84, 3, true);
+    check_read("4*2", 0, 0, 2, true);
+    check_read("o", 0, 0, 0, true);
+    check_read("**", 0, 0, 0, true);
+    check_read("*", 1, 1, 0, false);
+    check_read("x", 1, 1, 0, false);
+    check_read("22x", 0, 0, 2, true);
     check_read("(999983)(999979)2", -1, (1.0 / 999983 + 1.0 / 999979 - 0.5) / 2 * 2, 3, true);
-    check_read("*22222222", -1, -1, 8, false);
+    check_read("*22222222", -1, -1, 8, true);
 }
 
 TEST(orders_are_handed_out) {
@@ -87,21 +89,77 @@ TEST(advice_puts_long_orders_in_parentheses) {
     CHECK(signature_parse("53", &signature, &error) == ORB_BAD_ORBIFOLD && strstr(error.message, "55"));
 }
 
-static orb_status match(const char *text, int32_t n, const int32_t *orders, int32_t *matched) {
+/* On the boundary of a triangle fan: vertex 0 inside, 1 ... 6 round it. */
+static orb_status match(const char *text, int32_t n, const int32_t *picks, const int32_t *given, int32_t *order,
+                        orb_error *error) {
+    double vertices[21] = {0};
+    int32_t triangles[18];
+    for (int32_t i = 0; i < 6; i++) {
+        vertices[3 * i + 3] = cos(i * 1.0471975511965976);
+        vertices[3 * i + 4] = sin(i * 1.0471975511965976);
+        triangles[3 * i] = 0;
+        triangles[3 * i + 1] = 1 + i;
+        triangles[3 * i + 2] = 1 + (i + 1) % 6;
+    }
+    orb_mesh_arrays arrays = {7, vertices, 6, triangles};
+    orb_mesh *mesh = NULL;
+    orb_boundary *boundary = NULL;
     orb_signature *signature = NULL;
-    orb_error error;
-    orb_status status = signature_parse(text, &signature, &error);
+    bool mirror[8], filled = false;
+    orb_status status = mesh_create(&arrays, &mesh, error);
     if (status == ORB_OK)
-        status = signature_match(signature, n, orders, matched, &error);
+        status = boundary_list(mesh, &boundary, error);
+    if (status == ORB_OK)
+        status = signature_parse(text, &signature, error);
+    if (status == ORB_OK)
+        status = picks_match(signature, boundary, &filled, n, picks, given, order, mirror, error);
+    for (int32_t i = 0; i < n && status == ORB_OK; i++)
+        CHECK(mirror[i] == (picks[i] > 0));
     signature_free(signature);
+    boundary_free(boundary);
+    mesh_free(mesh);
     return status;
 }
 
-TEST(cones_are_matched_with_orders) {
-    int32_t matched[4], turned[] = {2, 3, 4}, wrong[] = {2, 3, 3};
-    CHECK(match("432", 3, NULL, matched) == ORB_OK && matched[0] == 4 && matched[2] == 2);
-    CHECK(match("432", 3, turned, matched) == ORB_OK && matched[0] == 2 && matched[2] == 4);
-    CHECK(match("432", 3, wrong, matched) == ORB_BAD_ORDER);
-    CHECK(match("432", 4, NULL, matched) == ORB_CONE_COUNT);
-    CHECK(match("*432", 3, NULL, matched) == ORB_UNSUPPORTED_SIGNATURE);
+TEST(picks_are_matched_with_orders) {
+    int32_t order[8];
+    orb_error error;
+    CHECK(match("*432", 3, (int32_t[]){1, 2, 5}, NULL, order, &error) == ORB_OK && order[0] == 4 && order[2] == 2);
+    CHECK(match("*432", 3, (int32_t[]){5, 2, 1}, NULL, order, &error) == ORB_OK && order[0] == 4 && order[2] == 2);
+    CHECK(match("*432", 3, (int32_t[]){1, 2, 5}, (int32_t[]){2, 3, 4}, order, &error) == ORB_OK && order[0] == 2);
+    CHECK(match("*432", 3, (int32_t[]){1, 2, 5}, (int32_t[]){2, 3, 3}, order, &error) == ORB_BAD_ORDER);
+    CHECK(match("*432", 4, (int32_t[]){1, 2, 5, 6}, NULL, order, &error) == ORB_CONE_COUNT);
+    CHECK(match("*2345", 4, (int32_t[]){4, 6, 1, 2}, NULL, order, &error) == ORB_OK);
+    CHECK(match("*2345", 4, (int32_t[]){4, 1, 6, 2}, NULL, order, &error) == ORB_BAD_ORDER);
+    CHECK(match("*2345", 4, (int32_t[]){4, 1, 6, 2}, (int32_t[]){2, 4, 3, 5}, order, &error) == ORB_OK);
+    CHECK(match("4*2", 2, (int32_t[]){0, 3}, NULL, order, &error) == ORB_OK && order[0] == 4 && order[1] == 2);
+    CHECK(match("4*2", 2, (int32_t[]){3, 0}, NULL, order, &error) == ORB_OK && order[0] == 2 && order[1] == 4);
+    CHECK(match("4*2", 2, (int32_t[]){3, 4}, NULL, order, &error) == ORB_BAD_CONE && error.elements[0] == 3);
+    CHECK(match("*22", 2, (int32_t[]){3, 0}, NULL, order, &error) == ORB_BAD_CONE && error.elements[0] == 0);
+}
+
+TEST(mirrors_and_their_corners) {
+    orb_signature *s = NULL;
+    REQUIRE(signature_parse("o23*45**6xx", &s, NULL) == ORB_OK);
+    CHECK(s->n_handles == 1 && s->n_cones == 2 && s->n_mirrors == 3 && s->n_corners == 3 && s->n_crosscaps == 2);
+    CHECK(signature_corners(s, 0) == 2 && signature_corners(s, 1) == 0 && signature_corners(s, 2) == 1);
+    CHECK(s->orders[s->mirror_start[2]] == 6 && !strcmp(s->text, "o23*45**6xx"));
+    orb_signature *more = NULL;
+    REQUIRE(signature_with_mirrors(s, 2, &more, NULL) == ORB_OK);
+    CHECK(!strcmp(more->text, "o23*45**6**xx") && more->n_mirrors == 5);
+    CHECK_NEAR(more->euler, s->euler - 2, 1e-12);
+    signature_free(more);
+    signature_free(s);
+}
+
+TEST(what_nothing_holds_in_place) {
+    static const char *const loose[] = {"*", "x"};
+    for (int i = 0; i < 2; i++) {
+        orb_signature *s = NULL;
+        orb_error error;
+        REQUIRE(signature_parse(loose[i], &s, NULL) == ORB_OK);
+        CHECK(!signature_is_supported(s) && signature_refuse(s, &error) == ORB_UNSUPPORTED_SIGNATURE);
+        CHECK(strstr(error.message, "add a cone"));
+        signature_free(s);
+    }
 }

@@ -8,6 +8,7 @@
 #include "meshes.h"
 #include "quotient.h"
 #include "random.h"
+#include "tiles.h"
 #include "whole_sphere.h"
 
 static const double pi = 3.14159265358979323846;
@@ -40,14 +41,14 @@ TEST(quotient_is_invariant) {
         orb_quotient *quotient = NULL;
         orb_error error;
         random_state state = {1};
-        REQUIRE(tile_create(1, spheres[i].k, spheres[i].orders, &tile, &error) == ORB_OK);
+        REQUIRE(tile_of_cones(1, spheres[i].k, spheres[i].orders, &tile, &error) == ORB_OK);
         REQUIRE(quotient_create(tile, &quotient, &error) == ORB_OK);
         for (int n = 0; n < 200; n++) {
             orb_point p = random_point(&state);
             orb_ratio f = quotient_evaluate(quotient, p);
             CHECK_NEAR(cabs(f.zero) * cabs(f.zero) + cabs(f.pole) * cabs(f.pole), 1, 1e-12);
             CHECK_NEAR(cabs(f.zero - f.pole - f.one), 0, 1e-12);
-            for (int32_t s = 1; s < tile->n_pairings; s++) {
+            for (int32_t s = 0; s < tile->word->n_sides; s++) {
                 orb_point q = isometry_apply(tile->geometry, tile->pairings[s], p);
                 CHECK_NEAR(apart(f, quotient_evaluate(quotient, q)), 0, 1e-11);
             }
@@ -77,10 +78,10 @@ TEST(cones_go_to_zero_infinity_and_one) {
         orb_tile *tile = NULL;
         orb_quotient *quotient = NULL;
         orb_error error;
-        REQUIRE(tile_create(1, spheres[i].k, spheres[i].orders, &tile, &error) == ORB_OK);
+        REQUIRE(tile_of_cones(1, spheres[i].k, spheres[i].orders, &tile, &error) == ORB_OK);
         REQUIRE(quotient_create(tile, &quotient, &error) == ORB_OK);
-        for (int32_t c = 0; c < 2 * tile->n_cones - 2; c++) {
-            int32_t cone = c < tile->n_cones ? c : 2 * tile->n_cones - 2 - c;
+        for (int32_t c = 0; c < tile->word->n_sides; c++) {
+            int32_t cone = c < tile->word->n_nodes ? c : tile->word->n_sides - c;
             orb_ratio f = quotient_evaluate(quotient, tile->corners[c]);
             double complex small = cone == 0 ? f.zero : cone == 1 ? f.pole : f.one;
             CHECK(small == 0);
@@ -97,9 +98,9 @@ TEST(quotient_keeps_its_digits_near_the_cones) {
         orb_tile *tile = NULL;
         orb_quotient *quotient = NULL;
         orb_error error;
-        REQUIRE(tile_create(1, spheres[i].k, spheres[i].orders, &tile, &error) == ORB_OK);
+        REQUIRE(tile_of_cones(1, spheres[i].k, spheres[i].orders, &tile, &error) == ORB_OK);
         REQUIRE(quotient_create(tile, &quotient, &error) == ORB_OK);
-        for (int32_t c = 0; c < tile->n_cones; c++) {
+        for (int32_t c = 0; c < tile->word->n_nodes; c++) {
             double complex step = 1e-12 * cexp(0.7 * I), small[2];
             for (int k = 0; k < 2; k++) {
                 orb_point p = geometry_exp(tile->geometry, tile->corners[c], (k + 1) * step);
@@ -120,7 +121,7 @@ TEST(quotient_by_a_rotation_is_a_power) {
         orb_quotient *quotient = NULL;
         orb_error error;
         random_state state = {1};
-        REQUIRE(tile_create(1, 2, (int32_t[]){order, order}, &tile, &error) == ORB_OK);
+        REQUIRE(tile_of_cones(1, 2, (int32_t[]){order, order}, &tile, &error) == ORB_OK);
         REQUIRE(quotient_create(tile, &quotient, &error) == ORB_OK);
         double complex z1 = tile->corners[0].z, z2 = tile->corners[1].z;
         double complex unit = value(quotient_evaluate(quotient, point_of(0))) / cpow((0 - z1) / (0 - z2), order);
@@ -138,7 +139,7 @@ TEST(quotient_of_many_copies_does_not_overflow) {
     orb_tile *tile = NULL;
     orb_quotient *quotient = NULL;
     orb_error error;
-    REQUIRE(tile_create(1, 3, (int32_t[]){2, 3000, 2}, &tile, &error) == ORB_OK);
+    REQUIRE(tile_of_cones(1, 3, (int32_t[]){2, 3000, 2}, &tile, &error) == ORB_OK);
     REQUIRE(quotient_create(tile, &quotient, &error) == ORB_OK);
     orb_point p = point_of(1e-4 + 0.5e-3 * I);
     orb_ratio f = quotient_evaluate(quotient, p);
@@ -154,7 +155,7 @@ TEST(only_spherical_tiles_have_a_quotient) {
     orb_tile *tile = NULL;
     orb_quotient *quotient = NULL;
     orb_error error;
-    REQUIRE(tile_create(0, 3, (int32_t[]){3, 3, 3}, &tile, &error) == ORB_OK);
+    REQUIRE(tile_of_cones(0, 3, (int32_t[]){3, 3, 3}, &tile, &error) == ORB_OK);
     CHECK(quotient_create(tile, &quotient, &error) == ORB_BAD_ARGUMENT && !quotient);
     tile_free(tile);
 }
@@ -163,7 +164,7 @@ TEST(a_group_beyond_measure_is_refused_at_once) {
     orb_tile *tile = NULL;
     orb_quotient *quotient = NULL;
     orb_error error;
-    REQUIRE(tile_create(1, 3, (int32_t[]){1000000, 2, 2}, &tile, &error) == ORB_OK);
+    REQUIRE(tile_of_cones(1, 3, (int32_t[]){1000000, 2, 2}, &tile, &error) == ORB_OK);
     CHECK(quotient_create(tile, &quotient, &error) == ORB_UNSUPPORTED_SIGNATURE && !quotient);
     tile_free(tile);
 }
