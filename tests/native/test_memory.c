@@ -32,7 +32,7 @@ static orb_status use_everything(const sample_mesh *mesh, const orb_request *req
         orb_embedding_report(embedding, &report);
         status = orb_uv(embedding, ORB_CHART_DEFAULT, room, NULL, &error);
     }
-    if (status == ORB_OK && report.orbifold_euler > 0 && request->signature && !strpbrk(request->signature, "*x"))
+    if (status == ORB_OK && report.orbifold_euler > 1e-9 && request->signature && !strpbrk(request->signature, "*x"))
         status = orb_whole_sphere(embedding, room, NULL, &error);
     orb_embedding_free(embedding);
     return status;
