@@ -6,7 +6,7 @@
 #   ./build.sh test [--blender PATH]      everything; ends with `N passed, N failed`
 #   ./build.sh native                     build the library only, into addon/core/
 #   ./build.sh package                    build/orbifold_uv-VERSION.zip, to install in Blender
-#   ./build.sh bench                      seconds of each stage on several meshes
+#   ./build.sh bench [ROUNDS [MESHES]]    seconds of each stage on several meshes
 #   ./build.sh docs [--blender PATH]      the pictures of the documentation
 #   ./build.sh deps                       install what all of these need, and nothing else
 #   ./build.sh clean                      remove what was built
@@ -146,11 +146,7 @@ package() {
     echo "${zip#"$PWD"/}"
 }
 
-bench() {
-    want_python numpy
-    native
-    "$(find_python numpy)" "$root/tests/bench/bench.py" "${arguments[@]}"
-}
+bench() { native; make_native bench; "$build/native/bench" "${arguments[@]}"; }
 
 docs() {
     [ -e "$root/docs/make_pictures.sh" ] || die "there is no docs/make_pictures.sh"

@@ -104,7 +104,7 @@ def mask(n=44, eyes=False):
     x, z = 0.85 * radius * np.sin(angle), 1.1 * radius * np.cos(angle) * (1 + 0.05 * np.cos(2 * angle) * radius)
 
     def bump(cx, cz, wx, wz, height):
-        return height * np.exp(-(((x - cx) / wx) ** 2) - ((z - cz) / wz) ** 2)
+        return 1.6 * height * np.exp(-(((x - cx) / wx) ** 2) - ((z - cz) / wz) ** 2)
 
     relief = 0.55 * np.sqrt(np.maximum(0, 1.15 - radius**2))
     relief += bump(0, -0.05, 0.11, 0.26, 0.26) + bump(0, -0.2, 0.17, 0.1, 0.12)  # nose

@@ -111,10 +111,10 @@ static void count_euler(orb_signature *signature) {
         twice -= (double)(share * (n - 1)) / (double)n;
         fits = fits && fraction_add(&exact, -share * (n - 1), n);
     }
-    signature->euler = twice / 2;
     /* More than six orders of up to 10^6 are needed to overflow 127 bits; then chi is far below 0, unless most are
      * corners of order 2, whose fractions do not grow. */
     signature->curvature = fits ? (exact.numerator > 0) - (exact.numerator < 0) : (twice > 0) - (twice < 0);
+    signature->euler = signature->curvature == 0 ? 0 : twice / 2;
 }
 
 /* Teardrops and spindles: a sphere with one cone or two of different orders, a disk with such corners. */

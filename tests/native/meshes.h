@@ -420,4 +420,39 @@ static inline bool sample_read(sample_mesh *mesh, const char *name) {
     return true;
 }
 
+/* A disk: vertex 0 in the middle of n others. */
+static inline sample_mesh sample_fan(int32_t n) {
+    sample_mesh mesh = sample_new(n + 1, n);
+    for (int32_t i = 0; i < n; i++) {
+        double angle = 2 * 3.14159265358979323846 * i / n;
+        mesh.vertices[3 * i + 3] = cos(angle);
+        mesh.vertices[3 * i + 4] = sin(angle);
+        mesh.triangles[3 * i + 1] = 1 + i;
+        mesh.triangles[3 * i + 2] = 1 + (i + 1) % n;
+    }
+    return mesh;
+}
+
+/* A band of n quadrangles, halved, three vertices wide; twisted: a Möbius band. */
+static inline sample_mesh sample_band(int32_t n, bool twisted) {
+    sample_mesh mesh = sample_new(3 * n, 4 * n);
+    for (int32_t i = 0; i < n; i++)
+        for (int32_t j = 0; j < 3; j++) {
+            double angle = 2 * 3.14159265358979323846 * i / n, lean = twisted ? angle / 2 : 0, x = 0.3 * (j - 1);
+            double *p = mesh.vertices + 3 * (3 * i + j);
+            p[0] = (1 + x * cos(lean)) * cos(angle);
+            p[1] = (1 + x * cos(lean)) * sin(angle);
+            p[2] = x * sin(lean) + (twisted ? 0 : x);
+        }
+    for (int32_t i = 0; i < n; i++)
+        for (int32_t j = 0; j < 2; j++) {
+            bool flips = twisted && i == n - 1;
+            int32_t next = (i + 1) % n, a = 3 * i + j, b = 3 * i + j + 1;
+            int32_t c = 3 * next + (flips ? 2 - j : j), d = 3 * next + (flips ? 1 - j : j + 1);
+            int32_t *t = mesh.triangles + 3 * (4 * i + 2 * j);
+            t[0] = a, t[1] = c, t[2] = d, t[3] = a, t[4] = d, t[5] = b;
+        }
+    return mesh;
+}
+
 #endif

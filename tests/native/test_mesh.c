@@ -5,10 +5,7 @@
 #define mesh_free tested_mesh_free
 #define mesh_require_connected tested_mesh_require_connected
 #define mesh_orient tested_mesh_orient
-#define mesh_turn tested_mesh_turn
-#define mesh_turn_start tested_mesh_turn_start
-#define mesh_fan_ends tested_mesh_fan_ends
-#define mesh_follow_boundary tested_mesh_follow_boundary
+#define orientation_check tested_orientation_check
 #define mesh_find_boundary tested_mesh_find_boundary
 #define mesh_edge_length tested_mesh_edge_length
 #define mesh_triangle_area tested_mesh_triangle_area
@@ -28,6 +25,7 @@ static void *counted_calloc(size_t count, size_t size) {
 #define malloc counted_malloc
 #define calloc counted_calloc
 #include "../../native/src/mesh.c"
+#include "../../native/src/orientation.c"
 #undef malloc
 #undef calloc
 
