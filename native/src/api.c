@@ -8,11 +8,14 @@
 #include "distortion.h"
 #include "embedding.h"
 #include "initial.h"
+#include "intrinsic.h"
 #include "modulus.h"
 #include "monitor.h"
 #include "newton.h"
 #include "polygon.h"
 #include "weights.h"
+
+enum { MOST_ROUNDS = 8 }; /* of solving and mending */
 
 /* What is needed on the way and not afterwards. */
 typedef struct workshop {
@@ -21,6 +24,7 @@ typedef struct workshop {
     orb_embedding *embedding;
     orb_disk *disk;
     orb_problem *problem;
+    orb_intrinsic *intrinsic; /* for weights on other edges than the mesh's */
     orb_system *system;
     int32_t *order; /* [system->n_free] of the system's blocks */
     orb_monitor monitor;
@@ -104,6 +108,18 @@ static orb_status refuse_edge_between_poles(const workshop *work, orb_error *err
     return ORB_OK;
 }
 
+/* Conformal and Delaunay weights live on edges that the mesh may not have. */
+static orb_status find_other_edges(workshop *work, orb_error *error) {
+    const orb_request *request = work->request;
+    const bool conformal = request->weights == ORB_WEIGHTS_CONFORMAL;
+    if (!conformal && request->weights != ORB_WEIGHTS_DELAUNAY)
+        return ORB_OK;
+    orb_status status = intrinsic_create(work->embedding, conformal, &work->intrinsic, error);
+    if (status == ORB_OK)
+        status = intrinsic_triangulate(work->intrinsic, work->embedding, request->clamp, work->problem, error);
+    return status;
+}
+
 static orb_status cut_and_glue(workshop *work, orb_error *error) {
     orb_embedding *embedding = work->embedding;
     orb_report *report = &embedding->report;
@@ -124,6 +140,8 @@ static orb_status cut_and_glue(workshop *work, orb_error *error) {
         status = problem_create(embedding->mesh, embedding->copies, work->disk, embedding->tile, embedding->weights,
                                 &work->problem, error);
     if (status == ORB_OK)
+        status = find_other_edges(work, error);
+    if (status == ORB_OK)
         report->orbifold_euler = signature ? signature->euler : 0;
     report->seconds_tile = monitor_clock() - start;
     return status;
@@ -140,17 +158,18 @@ static orb_status set_up_system(workshop *work, orb_error *error) {
     if (!work->order)
         return error_memory(error);
     status = cholesky_order(&work->system->blocks, ORDERING_AMD, work->order, error);
-    work->embedding->report.seconds_assemble = built - start;
-    work->embedding->report.seconds_analyze = monitor_clock() - built;
+    work->embedding->report.seconds_assemble += built - start;
+    work->embedding->report.seconds_analyze += monitor_clock() - built;
     return status;
 }
 
 /* Weights for the disk's own mesh: the same, unless it was refined. */
 static orb_status start_on_disk(workshop *work, const int32_t *vertex_order, orb_point *start, orb_error *error) {
     const orb_disk *disk = work->disk;
+    const bool same = !work->intrinsic; /* the ordering is one of the mesh's edges */
     if (!disk->refined)
-        return initial_embed(disk, work->embedding->tile, work->embedding->weights, vertex_order, work->system->n_free,
-                             start, error);
+        return initial_embed(disk, work->embedding->tile, work->embedding->weights, same ? vertex_order : NULL,
+                             same ? work->system->n_free : 0, start, error);
     double *weights = malloc(((size_t)disk->mesh->n_edges + 1) * sizeof *weights);
     if (!weights)
         return error_memory(error);
@@ -205,21 +224,89 @@ static orb_status find_minimum(workshop *work, orb_minimum *minimum, orb_error *
     return status;
 }
 
+/* Where the copies are. */
+static orb_status place_copies(workshop *work, orb_error *error) {
+    orb_embedding *embedding = work->embedding;
+    size_t room = (size_t)embedding->copies->n_copies + 1;
+    double complex *turn = malloc(room * sizeof *turn);
+    free(embedding->placed);
+    embedding->placed = malloc(room * sizeof *embedding->placed);
+    bool fine = turn && embedding->placed;
+    if (fine)
+        problem_place(work->problem, embedding->position, embedding->placed, turn);
+    free(turn);
+    return fine ? ORB_OK : error_memory(error);
+}
+
+/* Keeps edges of the mesh from being flipped away where its triangles came out flipped, and sets all up again. */
+static orb_status keep_edges(workshop *work, const bool *flipped, int round, orb_error *error) {
+    orb_embedding *embedding = work->embedding;
+    bool changed = intrinsic_keep(work->intrinsic, embedding->mesh, flipped, round > 1);
+    if (!changed || round + 2 >= MOST_ROUNDS)
+        intrinsic_keep_all(work->intrinsic, embedding->mesh);
+    orb_status status = intrinsic_triangulate(work->intrinsic, embedding, work->request->clamp, work->problem, error);
+    system_free(work->system);
+    free(work->order);
+    work->system = NULL;
+    work->order = NULL;
+    return status == ORB_OK ? set_up_system(work, error) : status;
+}
+
+/* The triangles to mend: those that are flipped, or, where the minimiser got stuck, those around the vertex that it
+ * named. */
+static orb_status find_faults(workshop *work, const orb_error *stuck, bool *faults, int64_t *n, orb_error *error) {
+    const orb_mesh *mesh = work->embedding->mesh;
+    orb_status status = ORB_OK;
+    if (stuck->status == ORB_OK) {
+        status = place_copies(work, error);
+        *n = status == ORB_OK ? certificate_find_flipped(work->embedding, faults) : 0;
+        return status;
+    }
+    *n = stuck->n_found;
+    memset(faults, 0, (size_t)mesh->n_triangles * sizeof *faults);
+    for (int32_t h = 0; h < 3 * mesh->n_triangles && stuck->n_elements > 0; h++)
+        faults[h / 3] = faults[h / 3] || mesh->triangles[h] == stuck->elements[0];
+    return status;
+}
+
+/* Solves, and again until no triangle of the mesh is flipped, or none of its edges. */
+static orb_status find_mended_minimum(workshop *work, orb_minimum *minimum, orb_error *error) {
+    bool *faults = malloc(((size_t)work->embedding->mesh->n_triangles + 1) * sizeof *faults);
+    orb_status status = faults ? ORB_OK : error_memory(error);
+    for (int round = 0; status == ORB_OK; round++) {
+        orb_error stuck = {0};
+        int64_t n_faults = 0;
+        if (work->intrinsic->n_flips == 0) {
+            status = find_minimum(work, minimum, error);
+            break;
+        }
+        status = newton_minimise(work->problem, work->system, work->order, work->embedding->position, minimum,
+                                 &work->monitor, &stuck);
+        if (status != ORB_OK && status != ORB_NOT_CONVERGED) {
+            if (error)
+                *error = stuck;
+            break;
+        }
+        status = find_faults(work, &stuck, faults, &n_faults, error);
+        if (status != ORB_OK || (stuck.status == ORB_OK && n_faults == 0))
+            break;
+        status = keep_edges(work, faults, round, error);
+    }
+    free(faults);
+    return status;
+}
+
 /* The minimiser, the affine modulus, and the energy of what came out. */
 static orb_status minimise(workshop *work, orb_error *error) {
     orb_embedding *embedding = work->embedding;
     orb_report *report = &embedding->report;
     orb_minimum minimum;
-    orb_status status = find_minimum(work, &minimum, error);
+    orb_status status =
+        work->intrinsic ? find_mended_minimum(work, &minimum, error) : find_minimum(work, &minimum, error);
+    if (status == ORB_OK)
+        status = place_copies(work, error);
     if (status != ORB_OK)
         return status;
-    double complex *turn = malloc(((size_t)embedding->copies->n_copies + 1) * sizeof *turn);
-    embedding->placed = malloc(((size_t)embedding->copies->n_copies + 1) * sizeof *embedding->placed);
-    if (!turn || !embedding->placed) {
-        free(turn);
-        return error_memory(error);
-    }
-    problem_place(work->problem, embedding->position, embedding->placed, turn);
     double covariance[3] = {1, 0, 1};
     if (!geometry_has_translations(embedding->tile->geometry))
         ;                                                 /* rigid */
@@ -230,8 +317,9 @@ static orb_status minimise(workshop *work, orb_error *error) {
     modulus_choose(embedding, covariance);
     modulus_report(embedding);
     if (report->n_moduli > 0)
-        problem_place(work->problem, embedding->position, embedding->placed, turn);
-    free(turn);
+        status = place_copies(work, error);
+    if (status != ORB_OK)
+        return status;
     report->energy = problem_energy(work->problem, embedding->placed, NULL, NULL, NULL, NULL, NULL);
     report->iterations = minimum.iterations;
     report->relative_gradient = minimum.relative_gradient;
@@ -240,6 +328,8 @@ static orb_status minimise(workshop *work, orb_error *error) {
     report->seconds_analyze += minimum.seconds_analyze;
     report->seconds_factor = minimum.seconds_factor;
     report->seconds_solve = minimum.seconds_solve;
+    if (work->intrinsic)
+        intrinsic_finish(work->intrinsic, embedding);
     return ORB_OK;
 }
 
@@ -296,6 +386,7 @@ static orb_status embed_once(const orb_mesh_arrays *mesh, const orb_request *req
     free(work.order);
     system_free(work.system);
     problem_free(work.problem);
+    intrinsic_free(work.intrinsic);
     disk_free(work.disk);
     *result = work.embedding;
     if (status != ORB_OK) {

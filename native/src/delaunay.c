@@ -20,9 +20,11 @@ typedef struct quad {
 typedef struct flipper {
     orb_delaunay *result;
     orb_frames *frames;
-    const uint8_t *keep, *special;
-    int32_t *stack; /* [n_edges] edges that may have to be flipped */
-    bool *stacked;  /* [n_edges] */
+    const uint8_t *keep;
+    const bool *special;
+    int32_t *degree; /* [n_vertices] edge ends at a vertex */
+    int32_t *stack;  /* [n_edges] edges that may have to be flipped */
+    bool *stacked;   /* [n_edges] */
     int32_t height;
 } flipper;
 
@@ -160,16 +162,45 @@ static void push(flipper *work, int32_t e) {
     work->stack[work->height++] = e;
 }
 
+/* The vertices of an edge inside, and those across it. */
+static void ends_of(const orb_delaunay *d, int32_t e, int32_t *p, int32_t *q, int32_t *r, int32_t *s) {
+    const int32_t h = d->sides[2 * e], g = d->sides[2 * e + 1], *vertex = d->copies->vertex;
+    *p = vertex[d->corners[h]];
+    *q = vertex[d->corners[halfedge_next(h)]];
+    *r = vertex[d->corners[halfedge_previous(h)]];
+    *s = vertex[d->corners[halfedge_previous(g)]];
+}
+
+/* Whether the two triangles on an edge show the same copies along it, run against one another: then they lie in one
+ * frame, whatever fixes the edge's ends. */
+static bool in_one_frame(const orb_delaunay *d, int32_t e) {
+    const int32_t h = d->sides[2 * e], g = d->sides[2 * e + 1];
+    return !d->alike[e] && d->corners[h] == d->corners[halfedge_next(g)] &&
+           d->corners[halfedge_next(h)] == d->corners[g];
+}
+
 static bool may_flip(const flipper *work, int32_t e) {
     const orb_delaunay *d = work->result;
     const int32_t h = d->sides[2 * e], g = d->sides[2 * e + 1];
     if (g < 0 || g / 3 == h / 3 || (work->keep && work->keep[e]))
         return false;
-    const int32_t *vertex = d->copies->vertex;
-    const bool ends = work->special[vertex[d->corners[h]]] && work->special[vertex[d->corners[halfedge_next(h)]]];
-    const bool apexes = work->special[vertex[d->corners[halfedge_previous(h)]]] &&
-                        work->special[vertex[d->corners[halfedge_previous(g)]]];
-    return !ends && !apexes;
+    int32_t p, q, r, s;
+    ends_of(d, e, &p, &q, &r, &s);
+    if (work->special[p] && work->special[q] && !in_one_frame(d, e))
+        return false;
+    const int32_t lost = p == q ? 2 : 1; /* with fewer than three edges a free vertex would lie on its neighbours */
+    return (work->special[p] || work->degree[p] - lost >= 3) && (work->special[q] || work->degree[q] - lost >= 3);
+}
+
+/* The flip, and the degrees that it changes. */
+static void flip_counted(flipper *work, int32_t e, double length) {
+    int32_t p, q, r, s;
+    ends_of(work->result, e, &p, &q, &r, &s);
+    work->degree[p]--;
+    work->degree[q]--;
+    work->degree[r]++;
+    work->degree[s]++;
+    flip(work->result, e, length);
 }
 
 static orb_status flip_all(flipper *work, orb_error *error) {
@@ -189,7 +220,7 @@ static orb_status flip_all(flipper *work, orb_error *error) {
         orb_status status = align(work, e, error);
         if (status != ORB_OK)
             return status;
-        flip(d, e, length);
+        flip_counted(work, e, length);
         for (int k = 0; k < 2; k++) {
             push(work, d->edges[halfedge_next(d->sides[2 * e + k])]);
             push(work, d->edges[halfedge_previous(d->sides[2 * e + k])]);
@@ -226,7 +257,7 @@ static orb_status start(const orb_mesh *mesh, const orb_copies *copies, const do
 }
 
 orb_status delaunay_create(const orb_mesh *mesh, const orb_geometry *geometry, const orb_copies *copies,
-                           const double *lengths, const uint8_t *keep, const uint8_t *special, orb_delaunay **result,
+                           const double *lengths, const uint8_t *keep, const bool *special, orb_delaunay **result,
                            orb_error *error) {
     *result = NULL;
     orb_delaunay *delaunay = calloc(1, sizeof *delaunay);
@@ -241,10 +272,16 @@ orb_status delaunay_create(const orb_mesh *mesh, const orb_geometry *geometry, c
     delaunay->copies = frames_copies(work.frames);
     work.stack = malloc(((size_t)mesh->n_edges + 1) * sizeof *work.stack);
     work.stacked = calloc((size_t)mesh->n_edges + 1, sizeof *work.stacked);
-    if (!work.stack || !work.stacked)
-        status = error_memory(error);
-    else
+    work.degree = calloc((size_t)mesh->n_vertices + 1, sizeof *work.degree);
+    if (work.stack && work.stacked && work.degree) {
+        for (int32_t e = 0; e < mesh->n_edges; e++) {
+            work.degree[halfedge_from(mesh, mesh->edge_halfedge[e])]++;
+            work.degree[halfedge_to(mesh, mesh->edge_halfedge[e])]++;
+        }
         status = flip_all(&work, error);
+    } else {
+        status = error_memory(error);
+    }
     if (status != ORB_OK)
         goto done;
     status = error_set(error, ORB_OK, "%s", "");
@@ -253,6 +290,7 @@ orb_status delaunay_create(const orb_mesh *mesh, const orb_geometry *geometry, c
 done:
     free(work.stack);
     free(work.stacked);
+    free(work.degree);
     frames_free(work.frames);
     delaunay_free(delaunay);
     return status;

@@ -113,27 +113,30 @@ done:
 
 /* ---------------------------------------------------------------------------------------------- angles and areas */
 
-/* One triangle's angles, cotangents and twice its area; where the scaled lengths make none, those of the mesh's own
- * shape, and where that is none either, an equilateral one's. The area then is of the scaled lengths' size. */
+/* One triangle's angles, cotangents and twice its area. Where the scaled lengths make no triangle, the angles are those
+ * that it had when it became flat, pi, 0 and 0 (which keeps Newton's problem convex: Springborn, Schroeder and Pinkall
+ * 2008, section 3.1), and the rest is of the mesh's own shape, or, where that is none, an equilateral one's. */
 static bool measure(const double scaled[3], const double original[3], double angle[3], double cotangent[3],
                     double *area) {
     *area = sides_double_area(scaled);
     if (sides_angles(scaled, angle, cotangent))
         return true;
     double squares[2] = {0, 0};
+    int longest = 0;
     for (int c = 0; c < 3; c++) {
         squares[0] += original[c] * original[c];
         squares[1] += scaled[c] * scaled[c];
+        if (scaled[c] > scaled[longest])
+            longest = c;
     }
     if (sides_angles(original, angle, cotangent)) {
         *area = sides_double_area(original) * squares[1] / squares[0];
-        return false;
+    } else {
+        cotangent[0] = cotangent[1] = cotangent[2] = 1 / sqrt(3);
+        *area = squares[1] / 3 * sqrt(3) / 2;
     }
-    for (int c = 0; c < 3; c++) {
-        angle[c] = pi / 3;
-        cotangent[c] = 1 / sqrt(3);
-    }
-    *area = squares[1] / 3 * sqrt(3) / 2;
+    for (int c = 0; c < 3; c++)
+        angle[c] = c == longest ? pi : 0;
     return false;
 }
 

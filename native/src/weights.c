@@ -267,9 +267,12 @@ orb_status weights_compute(const orb_mesh *mesh, const orb_request *request, dou
     orb_status status = ORB_OK;
     switch (request->weights) {
     case ORB_WEIGHTS_COTANGENT:
+    case ORB_WEIGHTS_CONFORMAL:
+    case ORB_WEIGHTS_DELAUNAY:
         status = cotangent_weights(mesh, request->clamp, weights, &counted, error);
         break;
     case ORB_WEIGHTS_MEAN_VALUE:
+    case ORB_WEIGHTS_MEAN_VALUE_EXACT:
         status = mean_value_weights(mesh, weights, error);
         break;
     case ORB_WEIGHTS_UNIFORM:
@@ -281,7 +284,7 @@ orb_status weights_compute(const orb_mesh *mesh, const orb_request *request, dou
         break;
     default:
         status = error_set(error, ORB_BAD_ARGUMENT,
-                           "the kind of weights is %d: choose cotangent, mean-value, uniform or given",
+                           "the kind of weights is %d: choose cotangent, mean-value, uniform, given, conformal or Delaunay",
                            (int)request->weights);
     }
     if (n_clamped)

@@ -5,7 +5,6 @@
 #include "check.h"
 #include "embed.h"
 #include "lu.h"
-#include "problem.h"
 #include "random.h"
 #include "weights.h"
 
@@ -215,30 +214,36 @@ TEST(symmetric_weights_minimise) {
         orb_error error;
         REQUIRE(embed(&sample, cases[i].signature, cases[i].k, cases[i].cones, 0.01, &embedding, &error) == ORB_OK);
         const orb_mesh *mesh = embedding->mesh;
-        orb_problem *problem = NULL;
-        REQUIRE(problem_create(mesh, embedding->copies, embedding->tile, embedding->cones, embedding->weights, &problem,
-                               &error) == ORB_OK);
         double *both = sample_allocate(2 * (size_t)mesh->n_edges, sizeof *both), worst = 0;
-        for (int32_t k = 0; k < 2 * mesh->n_edges; k++)
-            both[k] = embedding->weights[k / 2];
-        const orb_balance balance = {embedding->tile->geometry,
-                                     embedding->copies,
-                                     mesh->n_vertices,
-                                     mesh->n_edges,
-                                     problem->edges,
-                                     both,
-                                     problem->freedom,
-                                     NULL};
+        int32_t *edges = sample_allocate(2 * (size_t)mesh->n_edges, sizeof *edges);
+        uint8_t *freedom = sample_allocate((size_t)mesh->n_vertices, 1);
+        for (int32_t e = 0; e < mesh->n_edges; e++) {
+            const int32_t h = mesh->edge_halfedge[e];
+            edges[2 * e] = embedding->copies->triangles[h];
+            edges[2 * e + 1] = embedding->copies->triangles[halfedge_next(h)];
+            both[2 * e] = both[2 * e + 1] = embedding->weights[e];
+        }
+        memset(freedom, 2, (size_t)mesh->n_vertices);
+        for (int32_t k = 0; k < cases[i].k; k++)
+            freedom[cases[i].cones[k]] = 0;
+        const orb_balance balance = {.geometry = embedding->tile->geometry,
+                                     .copies = embedding->copies,
+                                     .n_vertices = mesh->n_vertices,
+                                     .n_edges = mesh->n_edges,
+                                     .edges = edges,
+                                     .weights = both,
+                                     .freedom = freedom};
         orb_point *position = sample_allocate((size_t)mesh->n_vertices, sizeof *position);
         for (int32_t v = 0; v < mesh->n_vertices; v++)
-            position[v] = problem->freedom[v] ? point_of(CMPLX(0.1, 0.2)) : embedding->position[v];
+            position[v] = freedom[v] ? point_of(CMPLX(0.1, 0.2)) : embedding->position[v];
         CHECK(balance_solve(&balance, position, NULL, &error) == ORB_OK);
         for (int32_t v = 0; v < mesh->n_vertices; v++)
             worst = fmax(worst, cabs(position[v].z - embedding->position[v].z));
         CHECK_NEAR(worst, 0, 1e-12);
         free(position);
         free(both);
-        problem_free(problem);
+        free(edges);
+        free(freedom);
         orb_embedding_free(embedding);
         sample_free(&sample);
     }
