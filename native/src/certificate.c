@@ -77,12 +77,12 @@ static orb_status check_orientation(orb_embedding *embedding, orb_error *error) 
     if (flipped == without_area)
         return error_set_elements(error, ORB_ZERO_AREA_TRIANGLE, ORB_TRIANGLE, named, n_named, flipped,
                                   "%lld %s without area %s flat on the tile, first triangle %d: dissolve degenerate "
-                                  "faces, or take uniform weights",
+                                  "faces",
                                   (long long)flipped, flipped == 1 ? "triangle" : "triangles",
                                   flipped == 1 ? "stays" : "stay", (int)named[0]);
     return error_set_elements(error, ORB_CERTIFICATE_FAILED, ORB_TRIANGLE, named, n_named, flipped,
                               "%lld %s flipped on the tile, first triangle %d: pick a cone near it, put many cones in "
-                              "the sequence of a short walk, raise the clamp, or take uniform weights if these are not",
+                              "the sequence of a short walk, or raise the clamp",
                               (long long)flipped, flipped == 1 ? "triangle is" : "triangles are", (int)named[0]);
 }
 
