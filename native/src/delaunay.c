@@ -23,6 +23,7 @@ typedef struct flipper {
     const uint8_t *keep;
     const bool *special;
     int32_t *degree; /* [n_vertices] edge ends at a vertex */
+    int32_t *spared; /* [n_vertices] edges on a mirror that were given up there */
     int32_t *stack;  /* [n_edges] edges that may have to be flipped */
     bool *stacked;   /* [n_edges] */
     int32_t height;
@@ -229,6 +230,41 @@ static orb_status flip_all(flipper *work, orb_error *error) {
     return ORB_OK;
 }
 
+/* ------------------------------------------------------------------------------------------------------- mirrors */
+
+/* Whether a vertex on the boundary is left with three edges in the doubled surface, when one on the mirror goes, or is
+ * a corner, which stays where it is. */
+static bool can_spare(const flipper *work, const orb_mirrors *mirrors, int32_t vertex) {
+    const int32_t inside = work->degree[vertex] - 2, on_mirror = 2 - work->spared[vertex];
+    return mirrors->of[vertex] < 0 || 2 * inside + on_mirror - 1 >= 3;
+}
+
+/* Joins corners to their mirror images where they lie across an edge on a mirror from an obtuse angle. */
+static orb_status flip_across_mirrors(flipper *work, const orb_mirrors *mirrors, orb_error *error) {
+    orb_delaunay *d = work->result;
+    const int32_t *vertex = d->copies->vertex;
+    orb_status status = ORB_OK;
+    for (int32_t e = 0; e < d->n_edges && status == ORB_OK; e++) {
+        const int32_t h = d->sides[2 * e], next = halfedge_next(h), apex = d->corners[halfedge_previous(h)];
+        if (d->sides[2 * e + 1] >= 0 || (work->keep && work->keep[e]) || work->special[vertex[apex]])
+            continue;
+        const double length[3] = {d->lengths[e], d->lengths[d->edges[next]],
+                                  d->lengths[d->edges[halfedge_previous(h)]]};
+        const int32_t p = vertex[d->corners[h]], q = vertex[d->corners[next]];
+        const int32_t here = mirrors->of[p] >= 0 ? h : next, mirror = mirrors->of[here == h ? p : q];
+        if (mirror < 0 || !(sides_double_area(length) > 0) || sides_dot(length, 0) >= 0 ||
+            !can_spare(work, mirrors, p) || !can_spare(work, mirrors, q))
+            continue;
+        status =
+            frames_reflect(work->frames, d->corners[here], mirrors->reflections[mirror], apex, &d->across[e], error);
+        vertex = d->copies->vertex;
+        work->spared[p]++;
+        work->spared[q]++;
+        d->n_flips++;
+    }
+    return status;
+}
+
 /* --------------------------------------------------------------------------------------------- making and freeing */
 
 static orb_status start(const orb_mesh *mesh, const orb_copies *copies, const double *lengths, orb_delaunay *d,
@@ -242,7 +278,8 @@ static orb_status start(const orb_mesh *mesh, const orb_copies *copies, const do
     d->alike = malloc((edges + 1) * sizeof *d->alike);
     d->lengths = malloc((edges + 1) * sizeof *d->lengths);
     d->flipped = calloc(edges + 1, sizeof *d->flipped);
-    if (!d->corners || !d->edges || !d->sides || !d->alike || !d->lengths || !d->flipped)
+    d->across = malloc((edges + 1) * sizeof *d->across);
+    if (!d->corners || !d->edges || !d->sides || !d->alike || !d->lengths || !d->flipped || !d->across)
         return error_memory(error);
     memcpy(d->corners, copies->triangles, corners * sizeof *d->corners);
     memcpy(d->edges, mesh->edge, corners * sizeof *d->edges);
@@ -251,14 +288,15 @@ static orb_status start(const orb_mesh *mesh, const orb_copies *copies, const do
         const int32_t h = mesh->edge_halfedge[e], g = mesh->twin[h];
         d->sides[2 * e] = h;
         d->sides[2 * e + 1] = g;
+        d->across[e] = -1;
         d->alike[e] = g >= 0 && halfedge_from(mesh, h) == halfedge_from(mesh, g);
     }
     return ORB_OK;
 }
 
 orb_status delaunay_create(const orb_mesh *mesh, const orb_geometry *geometry, const orb_copies *copies,
-                           const double *lengths, const uint8_t *keep, const bool *special, orb_delaunay **result,
-                           orb_error *error) {
+                           const double *lengths, const uint8_t *keep, const bool *special, const orb_mirrors *mirrors,
+                           orb_delaunay **result, orb_error *error) {
     *result = NULL;
     orb_delaunay *delaunay = calloc(1, sizeof *delaunay);
     if (!delaunay)
@@ -273,12 +311,15 @@ orb_status delaunay_create(const orb_mesh *mesh, const orb_geometry *geometry, c
     work.stack = malloc(((size_t)mesh->n_edges + 1) * sizeof *work.stack);
     work.stacked = calloc((size_t)mesh->n_edges + 1, sizeof *work.stacked);
     work.degree = calloc((size_t)mesh->n_vertices + 1, sizeof *work.degree);
-    if (work.stack && work.stacked && work.degree) {
+    work.spared = calloc((size_t)mesh->n_vertices + 1, sizeof *work.spared);
+    if (work.stack && work.stacked && work.degree && work.spared) {
         for (int32_t e = 0; e < mesh->n_edges; e++) {
             work.degree[halfedge_from(mesh, mesh->edge_halfedge[e])]++;
             work.degree[halfedge_to(mesh, mesh->edge_halfedge[e])]++;
         }
         status = flip_all(&work, error);
+        if (status == ORB_OK && mirrors)
+            status = flip_across_mirrors(&work, mirrors, error);
     } else {
         status = error_memory(error);
     }
@@ -291,6 +332,7 @@ done:
     free(work.stack);
     free(work.stacked);
     free(work.degree);
+    free(work.spared);
     frames_free(work.frames);
     delaunay_free(delaunay);
     return status;
@@ -305,42 +347,7 @@ void delaunay_free(orb_delaunay *delaunay) {
     free(delaunay->alike);
     free(delaunay->lengths);
     free(delaunay->flipped);
+    free(delaunay->across);
     holonomy_free(delaunay->copies);
     free(delaunay);
-}
-
-/* ------------------------------------------------------------------------------------------------------- weights */
-
-/* The cotangents that a triangle's half-edges face; false if it has none. */
-static bool triangle_cotangents(const orb_delaunay *d, const double *original, int32_t t, double cotangent[3]) {
-    double length[3], before[3], angle[3];
-    bool is_input = true;
-    for (int c = 0; c < 3; c++) {
-        const int32_t e = d->edges[3 * t + c];
-        length[c] = d->lengths[e];
-        before[c] = original[e];
-        is_input = is_input && !d->flipped[e];
-    }
-    return sides_angles(length, angle, cotangent) || (is_input && sides_angles(before, angle, cotangent));
-}
-
-void delaunay_weights(const orb_delaunay *d, const double *original, double clamp, int32_t *ends, double *weights,
-                      int64_t *n_clamped) {
-    *n_clamped = 0;
-    for (int32_t e = 0; e < d->n_edges; e++) {
-        ends[2 * e] = d->corners[d->sides[2 * e]];
-        ends[2 * e + 1] = d->corners[halfedge_next(d->sides[2 * e])];
-        weights[e] = 0;
-    }
-    for (int32_t t = 0; t < d->n_triangles; t++) {
-        double cotangent[3] = {0, 0, 0};
-        const bool has_area = triangle_cotangents(d, original, t, cotangent);
-        for (int c = 0; c < 3; c++)
-            weights[d->edges[3 * t + c]] += has_area ? 0.5 * cotangent[c] : 0;
-    }
-    for (int32_t e = 0; e < d->n_edges; e++)
-        if (!(weights[e] >= clamp)) {
-            weights[e] = clamp;
-            ++*n_clamped;
-        }
 }

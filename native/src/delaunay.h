@@ -20,19 +20,28 @@ typedef struct orb_delaunay {
     bool *alike;      /* [n_edges] whether these run the same way (where a non-orientable surface closes up) */
     double *lengths;  /* [n_edges] */
     bool *flipped;    /* [n_edges] no longer the input's edge */
+    int32_t *across;  /* [n_edges] of an edge on a mirror that faces an obtuse angle: the mirror image of the corner
+                         there, to which that corner is joined instead; else -1 */
     int64_t n_flips;
     orb_copies *copies; /* the input's copies first, then those that were added; without triangles */
 } orb_delaunay;
 
+/* The mirrors on which vertices slide. */
+typedef struct orb_mirrors {
+    const int32_t *of; /* [n_vertices] the mirror that the vertex's own copy lies on; -1: none, or several */
+    const orb_isometry *reflections; /* by mirror */
+} orb_mirrors;
+
 /* The triangulation that the mesh has, with its copies and lengths[n_edges] (longest around 1), flipped until it is
- * Delaunay but for edges marked in keep[n_edges] (may be NULL), edges on the boundary, edges whose two ends are both
+ * Delaunay but for edges marked in keep[n_edges] (may be NULL), edges on the boundary that is no mirror, edges whose two ends are both
  * `special` [n_vertices] and whose two triangles lie in different frames, and those whose flip would leave a vertex
  * that is not special with fewer than three edges. Special is a vertex that some element of the
  * group fixes: a cone, or a vertex on a mirror. Lengths that break the triangle inequality are tolerated: there an edge
- * is flipped as in Ptolemy's theorem. `copies` are only read. Error: ORB_OUT_OF_MEMORY. */
+ * is flipped as in Ptolemy's theorem. An edge on a mirror is, in the surface doubled there, flipped to one between a
+ * vertex and its mirror image; that comes last, and no flip follows it. `mirrors` may be NULL. `copies` are only read. Error: ORB_OUT_OF_MEMORY. */
 orb_status delaunay_create(const orb_mesh *mesh, const orb_geometry *geometry, const orb_copies *copies,
-                           const double *lengths, const uint8_t *keep, const bool *special, orb_delaunay **delaunay,
-                           orb_error *error);
+                           const double *lengths, const uint8_t *keep, const bool *special, const orb_mirrors *mirrors,
+                           orb_delaunay **delaunay, orb_error *error);
 void delaunay_free(orb_delaunay *delaunay);
 
 /* Cotangent weights: weights[n_edges] half the sum of the cotangents that face an edge, raised to `clamp` once per edge

@@ -90,19 +90,14 @@ void frames_free(orb_frames *frames) {
 
 orb_copies *frames_copies(orb_frames *frames) { return frames->copies; }
 
-orb_status frames_carry(orb_frames *frames, int32_t here, int32_t there, int32_t copy, int32_t *carried,
-                        orb_error *error) {
+/* The copy of `copy`'s vertex at the element `change` after its own. */
+static orb_status move_copy(orb_frames *frames, orb_isometry change, int32_t copy, int32_t *moved, orb_error *error) {
     orb_copies *copies = frames->copies;
-    *carried = copy;
-    if (copies->isometry[here] == copies->isometry[there])
-        return ORB_OK;
-    const orb_isometry back = isometry_inverse(copies->isometries[copies->isometry[there]]);
-    const orb_isometry change = isometry_compose(frames->geometry, copies->isometries[copies->isometry[here]], back);
     const orb_isometry element = isometry_compose(frames->geometry, change, copies->isometries[copies->isometry[copy]]);
     const int32_t vertex = copies->vertex[copy];
     for (int32_t u = vertex; u >= 0; u = frames->next[u])
         if (isometry_same(frames->geometry, copies->isometries[copies->isometry[u]], element, same_element)) {
-            *carried = u;
+            *moved = u;
             return ORB_OK;
         }
     if (!make_room(frames))
@@ -113,6 +108,25 @@ orb_status frames_carry(orb_frames *frames, int32_t here, int32_t there, int32_t
     copies->isometry[made] = copies->n_isometries++;
     frames->next[made] = frames->next[vertex];
     frames->next[vertex] = made;
-    *carried = made;
+    *moved = made;
     return ORB_OK;
+}
+
+orb_status frames_carry(orb_frames *frames, int32_t here, int32_t there, int32_t copy, int32_t *carried,
+                        orb_error *error) {
+    const orb_copies *copies = frames->copies;
+    *carried = copy;
+    if (copies->isometry[here] == copies->isometry[there])
+        return ORB_OK;
+    const orb_isometry back = isometry_inverse(copies->isometries[copies->isometry[there]]);
+    return move_copy(frames, isometry_compose(frames->geometry, copies->isometries[copies->isometry[here]], back), copy,
+                     carried, error);
+}
+
+orb_status frames_reflect(orb_frames *frames, int32_t here, orb_isometry reflection, int32_t copy, int32_t *reflected,
+                          orb_error *error) {
+    const orb_isometry element = frames->copies->isometries[frames->copies->isometry[here]];
+    const orb_isometry turned = isometry_compose(frames->geometry, element, reflection);
+    return move_copy(frames, isometry_compose(frames->geometry, turned, isometry_inverse(element)), copy, reflected,
+                     error);
 }

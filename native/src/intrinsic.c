@@ -46,7 +46,29 @@ static orb_status take_metric(orb_intrinsic *intrinsic, const orb_embedding *emb
     return status;
 }
 
-orb_status intrinsic_create(orb_embedding *embedding, bool conformal, orb_intrinsic **result, orb_error *error) {
+/* Which vertices some element of the group fixes, and the reflections of the mirrors. */
+static orb_status find_mirrors(orb_intrinsic *intrinsic, const orb_embedding *embedding, const orb_problem *problem,
+                               orb_error *error) {
+    const orb_mesh *mesh = embedding->mesh;
+    const orb_tile *tile = embedding->tile;
+    const int32_t sides = tile->word->n_sides;
+    intrinsic->mirror = malloc(((size_t)mesh->n_vertices + 1) * sizeof *intrinsic->mirror);
+    intrinsic->reflections = malloc(((size_t)sides + 1) * sizeof *intrinsic->reflections);
+    if (!intrinsic->mirror || !intrinsic->reflections)
+        return error_memory(error);
+    memcpy(intrinsic->reflections, tile->pairings, (size_t)sides * sizeof *intrinsic->reflections);
+    mesh_find_boundary(mesh, intrinsic->special);
+    for (int32_t v = 0; v < mesh->n_vertices; v++) {
+        const bool slides = intrinsic->special[v] && problem->freedom[v] == 1;
+        intrinsic->mirror[v] = slides ? problem->line[v] : -1;
+    }
+    for (int32_t k = 0; k < embedding->surface->n_marks; k++)
+        intrinsic->special[embedding->surface->vertex[k]] = true;
+    return ORB_OK;
+}
+
+orb_status intrinsic_create(orb_embedding *embedding, const orb_problem *problem, bool conformal,
+                            orb_intrinsic **result, orb_error *error) {
     *result = NULL;
     const orb_mesh *mesh = embedding->mesh;
     const size_t n = (size_t)mesh->n_vertices + 1, edges = (size_t)mesh->n_edges + 1;
@@ -63,9 +85,9 @@ orb_status intrinsic_create(orb_embedding *embedding, bool conformal, orb_intrin
     if (!intrinsic->original || !intrinsic->lengths || !intrinsic->special || !intrinsic->keep || !intrinsic->ends ||
         !intrinsic->weights)
         goto done;
-    mesh_find_boundary(mesh, intrinsic->special);
-    for (int32_t k = 0; k < embedding->surface->n_marks; k++)
-        intrinsic->special[embedding->surface->vertex[k]] = true;
+    status = find_mirrors(intrinsic, embedding, problem, error);
+    if (status != ORB_OK)
+        goto done;
     metric_lengths(mesh, intrinsic->original);
     memcpy(intrinsic->lengths, intrinsic->original, (size_t)mesh->n_edges * sizeof *intrinsic->lengths);
     status = conformal && embedding->surface->signature ? take_metric(intrinsic, embedding, error)
@@ -90,6 +112,8 @@ void intrinsic_free(orb_intrinsic *intrinsic) {
     free(intrinsic->keep);
     free(intrinsic->ends);
     free(intrinsic->weights);
+    free(intrinsic->mirror);
+    free(intrinsic->reflections);
     holonomy_free(intrinsic->base);
     free(intrinsic);
 }
@@ -99,10 +123,11 @@ orb_status intrinsic_triangulate(orb_intrinsic *intrinsic, orb_embedding *embedd
     const orb_mesh *mesh = embedding->mesh;
     const size_t bytes = 3 * (size_t)mesh->n_triangles * sizeof(int32_t);
     orb_delaunay *delaunay = NULL;
+    const orb_mirrors mirrors = {intrinsic->mirror, intrinsic->reflections};
     int32_t *triangles = malloc(bytes + 1);
     orb_status status = triangles
                             ? delaunay_create(mesh, embedding->tile->geometry, intrinsic->base, intrinsic->lengths,
-                                              intrinsic->keep, intrinsic->special, &delaunay, error)
+                                              intrinsic->keep, intrinsic->special, &mirrors, &delaunay, error)
                             : error_memory(error);
     if (status != ORB_OK) {
         free(triangles);

@@ -19,12 +19,15 @@ typedef struct orb_intrinsic {
     int32_t *ends;    /* [n_edges*2] the edges, in copies */
     double *weights;  /* [n_edges] */
     int64_t n_clamped, n_flips;
-    orb_copies *base; /* the copies of the mesh's corners, without those that flips add */
+    int32_t *mirror;           /* [n_vertices] the side whose mirror it slides on; -1 */
+    orb_isometry *reflections; /* [sides of the tile] */
+    orb_copies *base;          /* the copies of the mesh's corners, without those that flips add */
 } orb_intrinsic;
 
-/* Takes embedding->copies over. `conformal`: the orbifold's metric; a fixed polygon has
+/* `problem` says which vertices slide on mirrors. Takes embedding->copies over. `conformal`: the orbifold's metric; a fixed polygon has
  * none, and gets the mesh's. */
-orb_status intrinsic_create(orb_embedding *embedding, bool conformal, orb_intrinsic **intrinsic, orb_error *error);
+orb_status intrinsic_create(orb_embedding *embedding, const orb_problem *problem, bool conformal,
+                            orb_intrinsic **intrinsic, orb_error *error);
 void intrinsic_free(orb_intrinsic *intrinsic);
 
 /* Flips what may be flipped, from the start, and hands edges and weights to the problem. embedding->copies becomes the

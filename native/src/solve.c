@@ -37,7 +37,7 @@ orb_status solve_find_weights(orb_workshop *work, orb_error *error) {
         return check_exact_mean_values(work->embedding, error);
     if (!conformal && request->weights != ORB_WEIGHTS_DELAUNAY)
         return ORB_OK;
-    orb_status status = intrinsic_create(work->embedding, conformal, &work->intrinsic, error);
+    orb_status status = intrinsic_create(work->embedding, work->problem, conformal, &work->intrinsic, error);
     if (status == ORB_OK)
         status = intrinsic_triangulate(work->intrinsic, work->embedding, request->clamp, work->problem, error);
     return status;

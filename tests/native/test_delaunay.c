@@ -6,6 +6,7 @@
 #define frames_free tested_frames_free
 #define frames_copies tested_frames_copies
 #define frames_carry tested_frames_carry
+#define frames_reflect tested_frames_reflect
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -22,6 +23,7 @@ static void *counted_realloc(void *old, size_t size) { return allocations++ == f
 #define calloc counted_calloc
 #define realloc counted_realloc
 #include "../../native/src/delaunay.c"
+#include "../../native/src/delaunay_weights.c"
 #define same_element same_element_of_frames
 #include "../../native/src/frames.c"
 #undef malloc
@@ -216,7 +218,7 @@ static flat flat_orbifold(sample_mesh sample, const char *signature, int32_t k, 
 static orb_delaunay *flip_edges(const flat *f, const uint8_t *keep) {
     orb_delaunay *d = NULL;
     orb_error error;
-    if (delaunay_create(f->mesh, f->geometry, f->copies, f->lengths, keep, f->special, &d, &error) != ORB_OK) {
+    if (delaunay_create(f->mesh, f->geometry, f->copies, f->lengths, keep, f->special, NULL, &d, &error) != ORB_OK) {
         CHECK_FAILED("%s", error.message);
         abort();
     }
@@ -611,7 +613,8 @@ TEST(failed_allocations_are_reported) {
         allocations = 0;
         failing = n;
         orb_delaunay *d = (orb_delaunay *)&f;
-        const orb_status status = delaunay_create(f.mesh, f.geometry, f.copies, f.lengths, NULL, f.special, &d, &error);
+        const orb_status status =
+            delaunay_create(f.mesh, f.geometry, f.copies, f.lengths, NULL, f.special, NULL, &d, &error);
         failing = -1;
         CHECK((status == ORB_OK) == (d != NULL));
         CHECK(status == ORB_OK || status == ORB_OUT_OF_MEMORY);
