@@ -14,7 +14,7 @@
 
 const char *orb_version(void) { return "0.1.0"; }
 
-orb_request orb_request_default(void) { return (orb_request){.weights = ORB_WEIGHTS_COTANGENT, .clamp = 0.01}; }
+orb_request orb_request_default(void) { return (orb_request){.weights = ORB_WEIGHTS_CONFORMAL, .clamp = 0.01}; }
 
 /* Mesh, signature and picks: everything that can be wrong before any work is done. */
 static orb_status read_input(orb_workshop *work, const orb_mesh_arrays *arrays, orb_error *error) {

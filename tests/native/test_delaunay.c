@@ -516,6 +516,99 @@ TEST(orbifolds) {
     }
 }
 
+/* Surfaces that are not orientable: neighbours that face the other way, and elements that reflect. */
+TEST(moebius_bands) {
+    for (int32_t n = 9; n < 14; n += 2) {
+        sample_mesh band = sample_band(n, true), fine = sample_refined(&band, 3);
+        sample_free(&band);
+        flat f = flat_orbifold(fine, "*x", 0, NULL);
+        int32_t alike = 0;
+        for (int32_t h = 0; h < 3 * f.mesh->n_triangles; h++) {
+            alike += f.mesh->twin[h] >= 0 && halfedge_from(f.mesh, h) == halfedge_from(f.mesh, f.mesh->twin[h]);
+            if (f.mesh->twin[h] < 0)
+                f.special[halfedge_from(f.mesh, h)] = f.special[halfedge_to(f.mesh, h)] = true;
+        }
+        CHECK(alike > 6);
+        orb_delaunay *d = flip_edges(&f, NULL);
+        CHECK(d->n_flips > 30);
+        int32_t reflected = 0;
+        for (int32_t u = 0; u < d->copies->n_copies; u++)
+            reflected += d->copies->isometries[d->copies->isometry[u]].reflects;
+        CHECK(reflected > 6);
+        check_links(d);
+        check_places(&f, d);
+        check_elements(&f, d);
+        check_angles(&f, d, NULL);
+        check_energy(&f, d);
+        delaunay_free(d);
+        flat_free(&f);
+    }
+}
+
+/* The identity of a flat surface has the energy that is its area, on any triangulation; where edges on a mirror are
+ * flipped, as much. */
+static double energy_of_identity(const flat *f, const orb_delaunay *d) {
+    int32_t *ends = sample_allocate(2 * (size_t)d->n_edges, sizeof *ends);
+    double *weights = sample_allocate((size_t)d->n_edges, sizeof *weights), energy = 0;
+    int64_t clamped = 0;
+    delaunay_weights(d, f->lengths, -INFINITY, ends, weights, &clamped);
+    for (int32_t e = 0; e < d->n_edges; e++) {
+        const double length =
+            geometry_distance(f->geometry, place(f, d->copies, ends[2 * e]), place(f, d->copies, ends[2 * e + 1]));
+        energy += 0.5 * weights[e] * length * length;
+        if (d->across[e] >= 0)
+            CHECK(weights[e] >= 0);
+    }
+    free(ends);
+    free(weights);
+    return energy;
+}
+
+TEST(edges_on_mirrors) {
+    flat f = flat_disk(wild_square(12));
+    const double area = 16; /* of the parallelogram: 4, lengths being twice the chart's */
+    orb_delaunay *plain = flip_edges(&f, NULL);
+    CHECK_NEAR(energy_of_identity(&f, plain), area, 1e-11);
+    int32_t *of = sample_allocate((size_t)f.mesh->n_vertices, sizeof *of), across = 0, kept = 0;
+    for (int32_t v = 0; v < f.mesh->n_vertices; v++) { /* below, above, left, right */
+        const double y = cimag(f.position[v].z), x = creal(f.position[v].z) - 1.5 * y;
+        of[v] = v < 4 ? -1 : y < 1e-9 ? 0 : y > 1 - 1e-9 ? 1 : x < 1e-9 ? 2 : x > 4 - 1e-9 ? 3 : -1;
+    }
+    const double complex from[4] = {0, CMPLX(1.5, 1), 0, 4}, along[4] = {1, 1, CMPLX(1.5, 1), CMPLX(1.5, 1)};
+    orb_isometry reflections[4];
+    for (int k = 0; k < 4; k++)
+        reflections[k] = isometry_reflection(f.geometry, point_of(from[k]), point_of(from[k] + along[k]),
+                                             point_of(from[k]), point_of(from[k] + along[k]));
+    const orb_mirrors mirrors = {of, reflections};
+    orb_delaunay *d = NULL;
+    orb_error error;
+    REQUIRE(delaunay_create(f.mesh, f.geometry, f.copies, f.lengths, NULL, f.special, &mirrors, &d, &error) == ORB_OK);
+    for (int32_t e = 0; e < d->n_edges; e++) {
+        const int32_t h = d->sides[2 * e];
+        if (d->sides[2 * e + 1] >= 0) {
+            CHECK(d->across[e] < 0);
+            continue;
+        }
+        const double length[3] = {d->lengths[e], d->lengths[d->edges[halfedge_next(h)]],
+                                  d->lengths[d->edges[halfedge_previous(h)]]};
+        kept += d->across[e] < 0 && sides_dot(length, 0) < 0 && !f.special[d->corners[halfedge_previous(h)]];
+        if (d->across[e] < 0)
+            continue;
+        across++;
+        const double complex p = place(&f, d->copies, d->corners[h]).z,
+                             q = place(&f, d->copies, d->corners[halfedge_next(h)]).z,
+                             r = place(&f, d->copies, d->corners[halfedge_previous(h)]).z,
+                             image = place(&f, d->copies, d->across[e]).z;
+        CHECK_NEAR(cabs((image - p) / (q - p) - conj((r - p) / (q - p))), 0, 1e-12);
+    }
+    CHECK(across > 5 && kept <= across / 2); /* some vertices need the edges that they have */
+    CHECK_NEAR(energy_of_identity(&f, d), area, 1e-11);
+    delaunay_free(plain);
+    delaunay_free(d);
+    free(of);
+    flat_free(&f);
+}
+
 TEST(group_elements_in_curved_geometries) {
     const char *signatures[] = {"432", "237", "2222222"};
     for (int i = 0; i < 3; i++) {

@@ -6,6 +6,7 @@
 
 #include "check.h"
 #include "meshes.h"
+#include "random.h"
 
 static long allocations, failing = -1; /* -1: none fails */
 
@@ -39,6 +40,7 @@ static orb_status use_everything(const sample_mesh *mesh, const orb_request *req
 }
 
 static bool filling;
+static orb_weights kind = ORB_WEIGHTS_COTANGENT;
 
 static void fail_each(sample_mesh mesh, const char *signature, int32_t k, const int32_t *cones) {
     double *room = calloc(6 * (size_t)mesh.n_triangles + 3 * (size_t)mesh.n_vertices, sizeof *room);
@@ -46,6 +48,7 @@ static void fail_each(sample_mesh mesh, const char *signature, int32_t k, const 
     request.signature = signature;
     request.n_cones = k;
     request.cones = cones;
+    request.weights = kind;
     request.holes = filling ? ORB_HOLES_FILL : ORB_HOLES_REFUSE;
     CHECK(use_everything(&mesh, &request, room) == ORB_OK);
     long survived = 0, reported = 0;
@@ -88,4 +91,32 @@ TEST(out_of_memory_with_a_hole) {
     filling = true;
     fail_each(open, "432", 3, (int32_t[]){0, 14, 30});
     filling = false;
+}
+
+/* Vertices moved out, or in the plane, so that edges must be flipped. */
+static sample_mesh rough(sample_mesh mesh, bool flat) {
+    random_state state = {9};
+    for (int32_t v = flat ? 3 : 0; v < mesh.n_vertices; v++)
+        for (int k = 0; k < 3; k++)
+            mesh.vertices[3 * v + k] += flat ? 0 : 0.25 * random_unit(&state);
+    for (int32_t v = flat ? 6 : 0; v < mesh.n_vertices && flat; v++)
+        mesh.vertices[3 * v] *= 1.1 - 0.2 * random_unit(&state);
+    return mesh;
+}
+
+static void fail_each_with(orb_weights weights, sample_mesh mesh, const char *signature, const int32_t *cones) {
+    kind = weights;
+    fail_each(mesh, signature, 3, cones);
+    kind = ORB_WEIGHTS_COTANGENT;
+}
+
+TEST(out_of_memory_with_conformal_weights) {
+    fail_each_with(ORB_WEIGHTS_CONFORMAL, rough(sample_icosphere(1), false), "432", (int32_t[]){0, 14, 30});
+    fail_each_with(ORB_WEIGHTS_CONFORMAL, rough(sample_triangle(1, 1, 3), true), "*442", (int32_t[]){0, 1, 2});
+}
+TEST(out_of_memory_with_delaunay_weights) {
+    fail_each_with(ORB_WEIGHTS_DELAUNAY, rough(sample_icosphere(1), false), "442", (int32_t[]){0, 14, 30});
+}
+TEST(out_of_memory_with_exact_mean_values) {
+    fail_each_with(ORB_WEIGHTS_MEAN_VALUE_EXACT, sample_icosphere(1), "442", (int32_t[]){0, 14, 30});
 }
