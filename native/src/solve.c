@@ -50,10 +50,12 @@ orb_status solve_set_up(orb_workshop *work, orb_error *error) {
     if (status != ORB_OK)
         return status;
     double built = monitor_clock();
-    work->order = malloc(((size_t)work->system->n_free + 1) * sizeof *work->order);
-    if (!work->order)
-        return error_memory(error);
-    status = cholesky_order(&work->system->blocks, ORDERING_AMD, work->order, error);
+    if (!work->order) { /* else it is that of nearly the same edges */
+        work->order = malloc(((size_t)work->system->n_free + 1) * sizeof *work->order);
+        if (!work->order)
+            return error_memory(error);
+        status = cholesky_order(&work->system->blocks, ORDERING_AMD, work->order, error);
+    }
     work->embedding->report.seconds_assemble += built - start;
     work->embedding->report.seconds_analyze += monitor_clock() - built;
     return status;
@@ -138,13 +140,14 @@ static orb_status place_copies(orb_workshop *work, orb_error *error) {
 static orb_status keep_edges(orb_workshop *work, const bool *flipped, int round, orb_error *error) {
     orb_embedding *embedding = work->embedding;
     bool changed = intrinsic_keep(work->intrinsic, embedding->mesh, flipped, round > 1);
-    if (!changed || round + 2 >= MOST_ROUNDS)
+    if (!changed || round + 2 >= MOST_ROUNDS) {
         intrinsic_keep_all(work->intrinsic, embedding->mesh);
+        free(work->order);
+        work->order = NULL;
+    }
     orb_status status = intrinsic_triangulate(work->intrinsic, embedding, work->request->clamp, work->problem, error);
     system_free(work->system);
-    free(work->order);
     work->system = NULL;
-    work->order = NULL;
     return status == ORB_OK ? solve_set_up(work, error) : status;
 }
 
