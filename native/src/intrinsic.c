@@ -154,13 +154,13 @@ static bool keep_triangle(orb_intrinsic *intrinsic, const orb_mesh *mesh, int32_
     return changed;
 }
 
-bool intrinsic_keep(orb_intrinsic *intrinsic, const orb_mesh *mesh, const bool *flipped, bool around) {
+bool intrinsic_keep(orb_intrinsic *intrinsic, const orb_mesh *mesh, const bool *flipped) {
     bool changed = false;
     for (int32_t t = 0; t < mesh->n_triangles; t++) {
         if (!flipped[t])
             continue;
         changed |= keep_triangle(intrinsic, mesh, t);
-        for (int32_t h = 3 * t; h < 3 * t + 3 && around; h++)
+        for (int32_t h = 3 * t; h < 3 * t + 3; h++)
             if (mesh->twin[h] >= 0)
                 changed |= keep_triangle(intrinsic, mesh, mesh->twin[h] / 3);
     }

@@ -35,9 +35,9 @@ void intrinsic_free(orb_intrinsic *intrinsic);
 orb_status intrinsic_triangulate(orb_intrinsic *intrinsic, orb_embedding *embedding, double clamp, orb_problem *problem,
                                  orb_error *error);
 
-/* Keeps the edges of flipped triangles [n_triangles]; `around`: those of their neighbours too. True if that changes
+/* Keeps the edges of flipped triangles [n_triangles] and of their neighbours (which saves a round). True if that changes
  * anything. */
-bool intrinsic_keep(orb_intrinsic *intrinsic, const orb_mesh *mesh, const bool *flipped, bool around);
+bool intrinsic_keep(orb_intrinsic *intrinsic, const orb_mesh *mesh, const bool *flipped);
 void intrinsic_keep_all(orb_intrinsic *intrinsic, const orb_mesh *mesh);
 
 /* embedding->copies without the added ones, and embedding->weights: NULL unless the edges are the mesh's. */

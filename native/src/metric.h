@@ -2,7 +2,7 @@
  *
  * A vertex's log scale u turns the length of an edge into l exp((u_i + u_j) / 2). Wanted are constant curvature, as
  * much as Gauss and Bonnet say (2 pi chi in all), and a given angle around every vertex: 2 pi, 2 pi / n at a cone, pi
- * on a mirror, pi / n at a mirror's corner (docs/mathematics.md, sections 8 and 9). On a boundary nothing else has to
+ * on a mirror, pi / n at a mirror's corner (docs/mathematics.md, section 9). On a boundary nothing else has to
  * be said: that is the metric of the mesh doubled along it. */
 #ifndef ORB_METRIC_H
 #define ORB_METRIC_H

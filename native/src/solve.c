@@ -139,7 +139,7 @@ static orb_status place_copies(orb_workshop *work, orb_error *error) {
 /* Keeps edges of the mesh from being flipped away where its triangles came out flipped, and sets all up again. */
 static orb_status keep_edges(orb_workshop *work, const bool *flipped, int round, orb_error *error) {
     orb_embedding *embedding = work->embedding;
-    bool changed = intrinsic_keep(work->intrinsic, embedding->mesh, flipped, round > 1);
+    bool changed = intrinsic_keep(work->intrinsic, embedding->mesh, flipped);
     if (!changed || round + 2 >= MOST_ROUNDS) {
         intrinsic_keep_all(work->intrinsic, embedding->mesh);
         free(work->order);
