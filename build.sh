@@ -6,7 +6,7 @@
 #   ./build.sh test [--blender PATH]      everything; ends with `N passed, N failed`
 #   ./build.sh native                     build the library only, into addon/core/
 #   ./build.sh package                    build/orbifold_uv-VERSION.zip, to install in Blender
-#   ./build.sh bench                      seconds of each stage on several meshes
+#   ./build.sh bench [ROUNDS [MESHES]]    seconds of each stage on several meshes
 #   ./build.sh docs [--blender PATH]      the pictures of the documentation
 #   ./build.sh deps                       install what all of these need, and nothing else
 #   ./build.sh clean                      remove what was built
@@ -61,6 +61,14 @@ want_blender() {
     command -v blender >/dev/null || { want blender; want libegl1; want libgl1; }
 }
 
+want_tests() { want_native; want_python numpy pytest; want_blender; }
+
+want_docs() {
+    want_blender
+    want_python numpy
+    want pngquant pngquant
+}
+
 install_missing() {
     [ ${#missing[@]} -gt 0 ] || return 0
     local log=$build/apt.log root_shell=()
@@ -96,7 +104,7 @@ find_blender() {
 
 # ---- the verbs
 
-deps() { want_native; want_python numpy pytest; want_blender; install_missing; }
+deps() { want_tests; want_docs; install_missing; }
 
 make_native() { make -C "$root/native" --no-print-directory -j "$jobs" $([ -n "$verbose" ] && echo VERBOSE=1 || echo -s) "$@"; }
 
@@ -138,17 +146,13 @@ package() {
     echo "${zip#"$PWD"/}"
 }
 
-bench() {
-    want_python numpy
-    native
-    "$(find_python numpy)" "$root/tests/bench/bench.py" "${arguments[@]}"
-}
+bench() { native; make_native bench; "$build/native/bench" "${arguments[@]}"; }
 
 docs() {
     [ -e "$root/docs/make_pictures.sh" ] || die "there is no docs/make_pictures.sh"
-    want_blender
+    want_docs
     native
-    ORBIFOLD_BLENDER=$(find_blender) bash "$root/docs/make_pictures.sh" "${arguments[@]}"
+    ORBIFOLD_BLENDER=$(find_blender) ORBIFOLD_PYTHON=$(find_python numpy) bash "$root/docs/make_pictures.sh" "${arguments[@]}"
 }
 
 clean() { rm -rf "$build" "$root/out" "$root/addon/core/liborbifold.so"; }
@@ -202,7 +206,8 @@ python_tests() {
 report_count() { grep -o '<testsuite [^>]*' "$2" | grep -o " $1=\"[0-9]*\"" | tr -dc 0-9; }
 
 run_tests() {
-    deps
+    want_tests
+    install_missing
     mkdir -p "$build"
     c_programs test "$build/native"
     export ASAN_OPTIONS=exitcode=99 UBSAN_OPTIONS=print_stacktrace=1

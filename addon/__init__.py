@@ -13,7 +13,7 @@ bl_info = {
 
 import bpy
 
-from . import handlers, operators, panels, preferences, properties
+from . import handlers, operators, panels, preferences, previews, properties, surface
 from .panels import menus
 
 CLASSES = (*preferences.CLASSES, *operators.CLASSES, *panels.CLASSES)
@@ -30,6 +30,8 @@ def register() -> None:
 def unregister() -> None:
     handlers.unregister()
     menus.unregister()
+    previews.clear()
+    surface.forget()
     for cls in reversed(CLASSES):
         bpy.utils.unregister_class(cls)
     properties.unregister()

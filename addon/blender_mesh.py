@@ -76,7 +76,7 @@ def read_loop_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
     """(loops,) int32: the vertex of each face corner."""
     vertices = np.empty(len(mesh.loops), np.int32)
     corner = mesh.attributes.get(".corner_vert")
-    if corner is not None:
+    if corner is not None and len(corner.data) == len(mesh.loops):
         corner.data.foreach_get("value", vertices)
     else:
         mesh.loops.foreach_get("vertex_index", vertices)
@@ -92,6 +92,24 @@ def read_edges(mesh: bpy.types.Mesh) -> np.ndarray:
     else:
         mesh.edges.foreach_get("vertices", edges)
     return edges.reshape(-1, 2)
+
+
+def read_faces(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """The vertices of all faces, one face after the other (loops,), and how many each has (faces,); in edit mode
+    those that were there when it was last left or updated."""
+    sizes = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_total", sizes)
+    return read_loop_vertices(mesh), sizes
+
+
+def boundary_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
+    """(n,) bool: vertices on an edge of one face only. Not in edit mode."""
+    edges = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("edge_index", edges)
+    single = np.bincount(edges, minlength=len(mesh.edges)) == 1
+    found = np.zeros(len(mesh.vertices), bool)
+    found[read_edges(mesh)[single].ravel()] = True
+    return found
 
 
 def read_mesh(mesh: bpy.types.Mesh) -> MeshArrays:
@@ -125,7 +143,7 @@ def _triangle_loops(mesh: bpy.types.Mesh, n_loops: int, n_polygons: int) -> tupl
 def write_uv(mesh: bpy.types.Mesh, arrays: MeshArrays, uv: np.ndarray, name: str = UV_MAP) -> None:
     """`uv` (m, 3, 2) per triangle corner -> the UV map `name`, created or replaced, and made the active one.
 
-    The triangles of one face must agree at the corners that they share (polygons.py sees to it).
+    The triangles of one face must agree at the corners that they share (faces.py sees to it).
     """
     corners = np.zeros((arrays.n_loops, 2), np.float32)
     corners[arrays.loops.ravel()] = uv.reshape(-1, 2)

@@ -50,12 +50,12 @@ def joined(name: str, uv: np.ndarray, points: np.ndarray, faces: np.ndarray) -> 
         start = np.broadcast_to(points[home, :1], points.shape)
         low = (start[..., 2] < 0) | (points[..., 2] < 0)
         uv[low] = _unfolded(start[low], points[low], uv[low])
-        flipped = np.bincount(face, (_areas(uv) <= 0) & (_areas(given) > 0)) > 0
+        flipped = np.bincount(face, (areas(uv) <= 0) & (areas(given) > 0)) > 0
         uv[flipped[face]] = given[flipped[face]]
     return uv
 
 
-def _areas(uv: np.ndarray) -> np.ndarray:
+def areas(uv: np.ndarray) -> np.ndarray:
     """(m,) twice the areas of triangles in the plane, negative where they are flipped."""
     a, b = uv[:, 1] - uv[:, 0], uv[:, 2] - uv[:, 0]
     return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]

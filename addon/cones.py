@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The cones of a mesh, kept on its vertices.
+"""The cones and mirror corners of a mesh, kept on its vertices; on the boundary a cone is a mirror corner.
 
 The truth is two whole-number vertex attributes, `orbifold_cone` and `orbifold_order`: as vertex data they follow
 undo in edit mode (which custom properties do not), leaving edit mode, saving, joining and the deletion of other
@@ -142,14 +142,27 @@ def is_writing() -> bool:
 def _write_mirror(mesh: bpy.types.Mesh, ranked: dict[int, Cone]) -> None:
     settings = mesh.orbifold
     wanted = [(cone.vertex, cone.order, rank) for rank, cone in ranked.items()]
-    if [(item.vertex, item.order, item.rank) for item in settings.cones] == wanted:
+    if not mesh.is_editmode and [(item.vertex, item.order, item.rank) for item in settings.cones] == wanted:
         return
+    flags = on_boundary(mesh, [vertex for vertex, _, _ in wanted])
     with writing():
         settings.cones.clear()
-        for vertex, order, rank in wanted:
+        for (vertex, order, rank), flag in zip(wanted, flags):
             item = settings.cones.add()
-            item.vertex, item.order, item.rank = vertex, order, rank
+            item.vertex, item.order, item.rank, item.mirror = vertex, order, rank, flag
         settings.active_cone = max(0, min(settings.active_cone, len(wanted) - 1))
+
+
+def on_boundary(mesh: bpy.types.Mesh, vertices: Sequence[int]) -> list[bool]:
+    """Whether each of these vertices lies on the mesh's boundary, where it is a mirror corner; in any mode."""
+    if not vertices:
+        return []
+    if mesh.is_editmode:
+        bm = bmesh.from_edit_mesh(mesh)
+        bm.verts.ensure_lookup_table()
+        return [vertex < len(bm.verts) and bm.verts[vertex].is_boundary for vertex in vertices]
+    flags = blender_mesh.boundary_vertices(mesh)
+    return [vertex < len(flags) and bool(flags[vertex]) for vertex in vertices]
 
 
 def has_cones(mesh: bpy.types.Mesh) -> bool:
@@ -173,7 +186,10 @@ def mirror_is_valid(mesh: bpy.types.Mesh) -> bool:
         return not len(items)
     bm.verts.ensure_lookup_table()
     return all(
-        item.vertex < len(bm.verts) and bm.verts[item.vertex][codes] == _code(item.rank, item.order) for item in items
+        item.vertex < len(bm.verts)
+        and bm.verts[item.vertex][codes] == _code(item.rank, item.order)
+        and bm.verts[item.vertex].is_boundary == item.mirror
+        for item in items
     )
 
 

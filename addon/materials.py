@@ -11,7 +11,7 @@ import numpy as np
 
 from . import blender_mesh, pattern
 from .core import Result
-from .faces import FaceLayout
+from .faces import FaceLayout, plain_layout
 
 IMAGE_SIZE = 1024
 SMALL_LAYOUT = 0.6  # of the unit square; below it, as in the middle of the hyperbolic disk, the image is twice as fine
@@ -23,7 +23,7 @@ def make_material(
     """A material for the layout that was written to the object (None: `result.uv` as it is), its image packed into
     the file. An earlier one of this object is replaced."""
     if layout is None:
-        layout = FaceLayout(result.chart, result.uv, result.embedding[result.cut_triangles], result.seams, 0)
+        layout = plain_layout(result)
     name = f"Orbifold {obj.name}"
     extent = np.ptp(layout.uv.reshape(-1, 2), axis=0).max()
     size = size or (IMAGE_SIZE if extent > SMALL_LAYOUT else 2 * IMAGE_SIZE)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the add-on keeps on a mesh: the list of its cones (a mirror, cones.py) and the signature as it was typed.
+"""What the add-on keeps on a mesh: the list of its cones and corners (a mirror, cones.py), the signature as it was
+typed, and what to do with holes.
 
 Orders and signature say the same thing twice, so that either may be edited: a signature that parses gives the cones
 their orders; an order that is changed in the list, and a cone that comes or goes, rewrites the signature. While fewer
@@ -8,46 +9,87 @@ cones are picked than the signature has, it stays as it was typed and the cones 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Optional
 
 import bpy
-from bpy.props import CollectionProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import BoolProperty, CollectionProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
 
-from . import cones, core
+from . import arrangement, cones, core, surface
 
 NEW_ORDER = 2
+HOLES = (
+    ("refuse", "Refuse", "A border that the signature has no mirror for is an error"),
+    ("fill", "Fill Holes for the Computation", "Borders without mirror corners beyond the signature's mirrors, the "
+     "shortest first, are closed for the computation; the mesh stays open"),
+    ("mirror", "Mirror", "Borders beyond the signature's mirrors become mirrors too"),
+)
 
 
-def read_orders(text: str) -> Optional[list[int]]:
-    """The orders of a signature that can be embedded; None for any other (panels/sidebar.py tells the reason)."""
+def read_signature(text: str) -> Optional[core.Signature]:
+    """A signature that can be embedded; None for any other (panels/sidebar.py tells the reason)."""
     try:
         read = core.parse_signature(text)
     except core.OrbifoldError:
         return None
-    return list(read.orders) if read.supported else None
+    return read if read.supported else None
+
+
+def arranged(mesh: bpy.types.Mesh, vertices: Sequence[int], anew: bool = False) -> arrangement.Arrangement:
+    """These vertices in a signature's sequence. Borders without corners are mirrors where the mesh's signature, or the
+    choice for holes, says so."""
+    seen, settings = surface.read(mesh) if anew else surface.glance(mesh), mesh.orbifold
+    typed = read_signature(settings.signature)
+    all_mirrors = settings.holes == "mirror" or (typed is not None and typed.n_mirrors == len(seen.loops))
+    return arrangement.arrange(vertices, seen, all_mirrors)
+
+
+def default_signature(mesh: bpy.types.Mesh) -> str:
+    """The signature of the mesh, or that of its surface without cones, all borders mirrors; empty for a sphere."""
+    if mesh.orbifold.signature or len(mesh.orbifold.cones):
+        return mesh.orbifold.signature
+    return arrangement.arrange([], surface.glance(mesh), True).text([])
 
 
 def set_cones(mesh: bpy.types.Mesh, vertices: list[int], orders: list[Optional[int]]) -> None:
     """Replace the cones. An order of None is a new cone's: the signature's next one, or 2."""
-    typed = read_orders(mesh.orbifold.signature) or []
-    fills = None in orders and len(vertices) <= len(typed)  # a signature that was typed first
-    keeps_text = fills and all(order in (None, wanted) for order, wanted in zip(orders, typed))
-    chosen = [
-        order if order is not None else (typed[place] if place < len(typed) else NEW_ORDER)
-        for place, order in enumerate(orders)
-    ]
+    places = arranged(mesh, vertices, anew=True)
+    typed = read_signature(mesh.orbifold.signature)
+    wanted = places.orders_from(typed) if typed is not None else None
+    keeps_text = False
+    if None in orders and wanted is not None:  # a signature that was typed first
+        keeps_text = all(orders[place] in (None, wanted[place]) for place in places.cones)
+        corners = [orders[place] for place in places.sequence if place not in places.cones]
+        keeps_text = keeps_text and _among([order for order in corners if order is not None], typed)
+    if keeps_text:
+        chosen = wanted
+    else:
+        chosen = [order or (wanted[place] if wanted else NEW_ORDER) for place, order in enumerate(orders)]
     cones.write_cones(mesh, [cones.Cone(vertex, order) for vertex, order in zip(vertices, chosen)])
     if vertices and not keeps_text:
-        write_signature(mesh, core.format_signature(chosen))
+        write_signature(mesh, places.text(chosen))
+
+
+def _among(orders: list[int], typed: core.Signature) -> bool:
+    """Whether these can be some of the signature's corners."""
+    left = list(typed.orders[typed.n_interior :])
+    for order in orders:
+        if order not in left:
+            return False
+        left.remove(order)
+    return True
 
 
 def sync(mesh: bpy.types.Mesh) -> None:
     """Bring the mirror, and the signature where it says something else, in line with the vertices."""
     cones.sync(mesh)
     orders = [item.order for item in mesh.orbifold.cones]
-    typed = read_orders(mesh.orbifold.signature) or []
-    if orders and typed[: len(orders)] != orders:
-        write_signature(mesh, core.format_signature(orders))
+    if not orders:
+        return
+    places = arranged(mesh, [item.vertex for item in mesh.orbifold.cones])
+    typed = read_signature(mesh.orbifold.signature)
+    if typed is None or places.orders_from(typed) != orders:
+        write_signature(mesh, places.text(orders))
 
 
 def write_signature(mesh: bpy.types.Mesh, text: str) -> None:
@@ -62,18 +104,20 @@ def _order_changed(item: "OrbifoldCone", _context: bpy.types.Context) -> None:
     mesh = item.id_data
     chosen = [(cone.vertex, cone.order) for cone in mesh.orbifold.cones]
     cones.write_cones(mesh, [cones.Cone(*pair) for pair in chosen])
-    write_signature(mesh, core.format_signature([order for _, order in chosen]))
+    places = arranged(mesh, [vertex for vertex, _ in chosen])
+    write_signature(mesh, places.text([order for _, order in chosen]))
 
 
 def _signature_changed(settings: "OrbifoldMesh", _context: bpy.types.Context) -> None:
     if cones.is_writing():
         return
     mesh = settings.id_data
-    orders = read_orders(settings.signature)
-    picked = cones.read_cones(mesh)
-    if orders is None or len(orders) < len(picked) or not picked:
+    read, picked = read_signature(settings.signature), cones.read_cones(mesh)
+    if read is None or not picked:
         return
-    cones.write_cones(mesh, [cones.Cone(cone.vertex, order) for cone, order in zip(picked, orders)])
+    orders = arranged(mesh, [cone.vertex for cone in picked]).orders_from(read)
+    if orders is not None:
+        cones.write_cones(mesh, [cones.Cone(cone.vertex, order) for cone, order in zip(picked, orders)])
 
 
 class OrbifoldCone(bpy.types.PropertyGroup):
@@ -81,9 +125,11 @@ class OrbifoldCone(bpy.types.PropertyGroup):
 
     vertex: IntProperty(name="Vertex", description="Index of the vertex that becomes this cone", min=0)
     rank: IntProperty(options={"HIDDEN"})
+    mirror: BoolProperty(name="Mirror Corner", description="The vertex lies on the mesh's border", options={"HIDDEN"})
     order: IntProperty(
         name="Order",
-        description="A cone of order N has the angle 360 / N degrees in the layout. Changing it rewrites the signature",
+        description="A cone of order N has the angle 360 / N degrees in the layout, a mirror corner, on the mesh's "
+        "border, 180 / N. Changing it rewrites the signature",
         min=2,
         max=cones.MAX_ORDER,
         soft_max=12,
@@ -100,11 +146,17 @@ class OrbifoldMesh(bpy.types.PropertyGroup):
     signature: StringProperty(
         name="Signature",
         description=(
-            "Conway's notation: the orders of the cones, one digit each, larger ones in parentheses, as 442 or 22(12). "
-            "The cones take these orders in the sequence of the list; the geometry follows from them"
+            "Conway's notation: the orders of the cones, one digit each, larger ones in parentheses, as 442 or 22(12); "
+            "a * for each border that is a mirror, then the orders of its corners, as *442 or 4*2; o for each handle, "
+            "x for each cross-cap. The cones of the list take these orders in turn; the geometry follows from them"
         ),
         maxlen=4096,
         update=_signature_changed,
+    )
+    holes: EnumProperty(
+        name="Holes",
+        description="What to do with borders of the mesh that the signature has no mirror for",
+        items=HOLES,
     )
 
 

@@ -6,24 +6,44 @@
 """
 
 from .binding import library
-from .embed import CHARTS, EmbeddingJob, Result, embed, start_embedding
+from .embed import EmbeddingJob, embed, start_embedding
 from .errors import OrbifoldError
+from .fitting import fitting_signatures
 from .meshio import MeshFileError, read_mesh
-from .signatures import Signature, format_signature, geometry_of, parse_signature, suggest_signatures
+from .polygon import Polygon
+from .result import CHARTS, Result
+from .signatures import (
+    Outline,
+    Signature,
+    describe,
+    format_signature,
+    geometry_of,
+    parse_signature,
+    surface_name,
+    tile_outline,
+)
+from .topology import Topology, topology_of
 
 __all__ = [
     "CHARTS",
     "EmbeddingJob",
     "MeshFileError",
     "OrbifoldError",
+    "Outline",
+    "Polygon",
     "Result",
     "Signature",
+    "Topology",
+    "describe",
     "embed",
+    "fitting_signatures",
     "format_signature",
     "geometry_of",
     "library",
     "parse_signature",
     "read_mesh",
     "start_embedding",
-    "suggest_signatures",
+    "surface_name",
+    "tile_outline",
+    "topology_of",
 ]

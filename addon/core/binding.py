@@ -23,8 +23,16 @@ OK = 0
 MAX_ELEMENTS = 16
 STAGE_LENGTH = 32
 ELEMENTS = (None, "vertex", "edge", "triangle", "character")
-WEIGHTS = {"cotan": 0, "mean-value": 1, "uniform": 2}
+WEIGHTS = {
+    "cotan": 0,
+    "mean-value": 1,
+    "uniform": 2,
+    "conformal": 4,
+    "delaunay": 5,
+    "mean-value-exact": 6,
+}
 WEIGHTS_GIVEN = 3
+HOLES = {"refuse": 0, "fill": 1, "mirror": 2}
 CHARTS = {
     "default": 0,
     "periodic": 1,
@@ -38,6 +46,7 @@ CHARTS = {
 
 DOUBLES = POINTER(c_double)
 INT32S = POINTER(c_int32)
+BOOLS = POINTER(c_bool)
 Progress = ctypes.CFUNCTYPE(c_bool, c_char_p, c_double, c_void_p)
 
 
@@ -61,12 +70,23 @@ class MeshArrays(Structure):
     ]
 
 
+class Polygon(Structure):
+    _fields_ = [
+        ("curvature", c_int32),
+        ("n_corners", c_int32),
+        ("corners", DOUBLES),
+        ("radius", c_double),
+    ]
+
+
 class Request(Structure):
     _fields_ = [
         ("signature", c_char_p),
         ("n_cones", c_int32),
         ("cones", INT32S),
         ("orders", INT32S),
+        ("holes", c_int),
+        ("polygon", POINTER(Polygon)),
         ("weights", c_int),
         ("clamp", c_double),
         ("n_edge_weights", c_int32),
@@ -83,24 +103,28 @@ class SignatureInfo(Structure):
         ("euler", c_double),
         ("n_cones", c_int32),
         ("supported", c_bool),
+        *((name, c_int32) for name in ("n_interior", "n_mirrors", "n_crosscaps", "n_handles")),
     ]
 
 
 class View(Structure):
     _fields_ = [
-        ("n_vertices", c_int32),
-        ("n_triangles", c_int32),
-        ("n_copies", c_int32),
-        ("n_cones", c_int32),
-        ("n_edges", c_int32),
-        ("n_seams", c_int32),
+        *((name, c_int32) for name in ("n_vertices", "n_triangles", "n_copies", "n_cones", "n_edges", "n_seams")),
+        ("n_input_triangles", c_int32),
+        ("vertices", DOUBLES),
+        ("triangles", INT32S),
+        ("refined_from", INT32S),
+        ("input_corners", INT32S),
         ("cut_triangles", INT32S),
         ("cut_to_vertex", INT32S),
         ("embedding", DOUBLES),
         ("embedding_low", DOUBLES),
         ("cones", INT32S),
         ("orders", INT32S),
+        ("mirrors", BOOLS),
         ("weights", DOUBLES),
+        ("n_generators", c_int32),
+        ("generators", DOUBLES),
         ("seams", INT32S),
         ("signature", c_char_p),
         ("geometry", c_char_p),
@@ -110,7 +134,12 @@ class View(Structure):
 class Report(Structure):
     _fields_ = [
         *((name, c_int32) for name in ("vertices", "triangles", "components", "euler", "boundary_loops", "genus")),
+        ("orientable", c_bool),
+        ("filled_holes", c_int32),
+        ("refined_edges", c_int32),
         ("orbifold_euler", c_double),
+        ("n_moduli", c_int32),
+        ("modulus", c_double * 2),
         ("iterations", c_int32),
         ("energy", c_double),
         ("relative_gradient", c_double),
@@ -147,6 +176,7 @@ PROTOTYPES = {
     "orb_status_name": (c_char_p, [c_int]),
     "orb_request_default": (Request, []),
     "orb_signature_read": (c_int, [c_char_p, POINTER(SignatureInfo), INT32S, c_int32, POINTER(Error)]),
+    "orb_signature_tile": (c_int, [c_char_p, DOUBLES, BOOLS, c_int32, INT32S, POINTER(Error)]),
     "orb_embed": (c_int, [POINTER(MeshArrays), POINTER(Request), POINTER(EMBEDDING), POINTER(Error)]),
     "orb_embedding_free": (None, [EMBEDDING]),
     "orb_embedding_view": (None, [EMBEDDING, POINTER(View)]),
@@ -229,6 +259,20 @@ def read_signature(text: str) -> tuple[SignatureInfo, list[int]]:
     return info, list(orders)
 
 
+def signature_tile(text: str) -> tuple[np.ndarray, np.ndarray]:
+    """orb_signature_tile: the corners (k, 3), counter-clockwise, and whether each side, from its corner to the next,
+    is a mirror (k,)."""
+    encoded, native = encode_signature(text), library()
+    count, record = c_int32(), Error()
+    check(native.orb_signature_tile(encoded, None, None, 0, count, record), record)
+    points, mirrors = np.empty((count.value, 3)), np.empty(count.value, bool)
+    filled = native.orb_signature_tile(
+        encoded, doubles(points), mirrors.ctypes.data_as(BOOLS), count.value, count, record
+    )
+    check(filled, record)
+    return points, mirrors
+
+
 def encode_signature(text: str) -> bytes:
     """A signature for C: UTF-8 without a NUL, at which C would stop reading."""
     if not isinstance(text, str):
@@ -279,9 +323,11 @@ class Job:
         self,
         vertices: np.ndarray,
         triangles: np.ndarray,
-        signature: str,
+        signature: str | None,
         cones: np.ndarray,
         orders: np.ndarray | None,
+        holes: int,
+        polygon: Polygon | None,
         weights: int,
         clamp: float,
         edge_weights: np.ndarray | None,
@@ -290,7 +336,11 @@ class Job:
         self._native = library()
         mesh = MeshArrays(len(vertices), doubles(vertices), len(triangles), int32s(triangles))
         request = self._native.orb_request_default()
-        request.signature = encode_signature(signature)
+        if signature is not None:
+            request.signature = encode_signature(signature)
+        if polygon is not None:
+            request.polygon = ctypes.pointer(polygon)
+        request.holes = holes
         request.n_cones, request.cones, request.orders = len(cones), int32s(cones), int32s(orders)
         request.weights, request.clamp = weights, clamp
         if edge_weights is not None:

@@ -11,13 +11,18 @@ from typing import NoReturn, Optional, Sequence
 from .errors import RunError
 
 DEFAULT_SIGNATURE = "442"
-WEIGHTS = ("conformal", "cotan", "mean-value", "uniform")
+WEIGHTS = ("conformal", "cotan", "delaunay", "mean-value", "mean-value-exact", "uniform")
+HOLES = ("refuse", "fill", "mirror")
 
 EPILOG = """\
 Cones are vertices of the mesh, counted from 0 in the sequence of the file, one for each number of the signature
-and in its sequence ("632": the first gets order 6). `--cones auto`, which is also what happens without --cones,
-takes extremities: the vertex farthest from the middle of the mesh, then again and again the vertex farthest along
-the mesh's edges from all cones so far. The same mesh always gets the same cones.
+and in its sequence ("632": the first gets order 6); those after a * are mirror corners and lie on the mesh's
+boundary. `--cones auto`, which is also what happens without --cones, takes extremities: the vertex farthest from the
+middle of the mesh (or from its mirrors), then again and again the vertex farthest along the mesh's edges from all
+cones so far; corners are spread evenly along the boundary. The same mesh always gets the same cones.
+
+A mesh with more boundary loops than the signature has mirrors (*) is refused; with --holes fill the others, the
+shortest ones, are closed for the computation, and with --holes mirror each adds a * to the signature.
 
 Four files are written, NAME being the mesh file's name without its ending: NAME.blend, NAME.json (the report),
 NAME.npz (the layout in double precision) and NAME.png (a picture). The exit status is 0 only if the result was
@@ -31,6 +36,7 @@ class Arguments:
     cones: Optional[tuple[int, ...]]  # None: chosen automatically
     orders: Optional[tuple[int, ...]]  # None: as the signature says
     weights: str
+    holes: str
     output: Path
     object_name: Optional[str]
 
@@ -58,6 +64,7 @@ def read_arguments(words: Sequence[str]) -> Arguments:
         cones=None if read.cones == "auto" else _whole_numbers("--cones", read.cones, "4,70,900 or auto"),
         orders=None if read.orders is None else _whole_numbers("--orders", read.orders, "4,4,2"),
         weights=read.weights,
+        holes=read.holes,
         output=read.output,
         object_name=read.object,
     )
@@ -67,8 +74,8 @@ def _parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog="./build.sh run",
         usage="./build.sh run [MESH] [--orbifold SIGNATURE] [--cones i,j,k | --cones auto] [--orders n,n,n]\n"
-        "                       [--weights conformal|cotan|mean-value|uniform] [--output DIR] [--object NAME]\n"
-        "                       [--blender PATH]",
+        "                       [--weights conformal|cotan|delaunay|mean-value|mean-value-exact|uniform]\n"
+        "                       [--holes refuse|fill|mirror] [--output DIR] [--object NAME] [--blender PATH]",
         description="Map a mesh onto an orbifold: seamless texture coordinates, certified to be a bijection.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -78,11 +85,13 @@ def _parser() -> argparse.ArgumentParser:
     add("mesh", metavar="MESH", nargs="?", type=Path,
         help=".obj .ply .stl .glb .gltf .fbx .blend .off; without it a sample creature is grown")
     add("--orbifold", metavar="SIGNATURE", default=DEFAULT_SIGNATURE,
-        help="Conway's notation: 442, 333, 632, 2222, 532, 432, 332, 22(5), 33, 237, 22222, ... (default %(default)s)")
+        help="Conway's notation: 442, 2222, 532, 22(12), 237, *632, 4*2, 22*, **, *x, xx, 22x, o, oo, ... (default %(default)s)")
     add("--cones", metavar="i,j,k", default="auto", help="vertices, or auto (default)")
     add("--orders", metavar="n,n,n", help="the order of each cone, where not in the signature's sequence")
     add("--weights", metavar="KIND", choices=WEIGHTS, default="cotan",
-        help="conformal, cotan, mean-value or uniform (default %(default)s)")
+        help=f"{', '.join(WEIGHTS[:-1])} (plane only) or {WEIGHTS[-1]} (default %(default)s)")
+    add("--holes", choices=HOLES, default="refuse",
+        help="boundary loops beyond the signature's mirrors: refuse, fill or mirror (default %(default)s)")
     add("--output", metavar="DIR", type=Path, default=Path("out"), help="folder for the results (default out)")
     add("--object", metavar="NAME", help="which object, where the file holds several meshes")
     add("--blender", metavar="PATH", help="the Blender to run in")  # read by build.sh; accepted here

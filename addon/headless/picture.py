@@ -10,7 +10,7 @@ from __future__ import annotations
 import contextlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Sequence
+from typing import Iterator, Sequence
 
 import bpy
 import numpy as np
@@ -34,6 +34,8 @@ OBJECT_X, PANEL_X = -1.13, 1.20
 WINDOW = 1.45  # in the plane: the radius of the round window on the tiling, in radii of the tile
 DISK_WINDOW = 2.2  # the same in the Poincaré disk, unless all of it can be shown
 
+MIRROR_LINE = 0.014  # half the thickness
+
 FLOOR = (0.52, 0.53, 0.55)
 
 
@@ -46,7 +48,7 @@ class Subject:
     cone_of_corner: Sequence[int]  # which cone (0, 1, ...) each of tiling.cones is a copy of
     colours: np.ndarray  # (cones, 3)
     material: bpy.types.Material
-    uv: np.ndarray  # (m, 3, 2) texture coordinates of the tile's triangles
+    uv: np.ndarray  # (m, 3, 2) texture coordinates of tiling.triangles
 
 
 def render_picture(subject: Subject, path: Path) -> None:
@@ -82,6 +84,8 @@ def _place_object(scene: bpy.types.Scene, subject: Subject) -> None:
 
 def _best_turn(subject: Subject, standing: np.ndarray) -> np.ndarray:
     """The rotation about the vertical that turns most cones towards the camera; the first of TURNS among equals."""
+    if not len(subject.cones):
+        return np.array(Matrix.Rotation(np.radians(TURNS[0]), 3, "Z"))
     normals = np.array([subject.obj.data.vertices[int(cone)].normal for cone in subject.cones])
     normals = normals @ np.linalg.inv(standing)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True) + 1e-30
@@ -118,7 +122,8 @@ def _place_panel(scene: bpy.types.Scene, subject: Subject) -> None:
     tile = centre + drawn(tiling.curvature, tiling.points @ images[0].T) @ (face * scale).T
     for corner, number in zip(tiling.cones, subject.cone_of_corner):
         _add_ball(scene, tile[corner] + towards_camera, 0.032, subject.colours[number])
-    _add_outline(scene, tile + towards_camera * 0.6, tiling.triangles)
+    for on_mirror, thickness in ((False, 0.006), (True, MIRROR_LINE)):
+        _add_outline(scene, tile + towards_camera * 0.6, tiling.outline[tiling.mirrors == on_mirror], thickness)
 
 
 def _middle_height() -> float:
@@ -141,8 +146,9 @@ def _centring(tiling: Tiling) -> np.ndarray:
 
 
 def _tile_radius(tiling: Tiling, image: np.ndarray) -> float:
-    """As drawn: how far the tile's cones are from its middle."""
-    return float(np.linalg.norm(drawn(tiling.curvature, tiling.points[tiling.cones] @ image.T), axis=1).max())
+    """As drawn: how far the tile's corners are from its middle; all of its points, where there are fewer than three."""
+    corners = tiling.cones if len(tiling.cones) >= 3 else np.unique(tiling.outline)
+    return float(np.linalg.norm(drawn(tiling.curvature, tiling.points[corners] @ image.T), axis=1).max())
 
 
 def _images_within(tiling: Tiling, images: list[np.ndarray], reach: float) -> list[np.ndarray]:
@@ -206,26 +212,33 @@ def _mesh(points: np.ndarray, triangles: np.ndarray, uv: np.ndarray, material: b
     return mesh
 
 
-def _add_outline(scene: bpy.types.Scene, tile: np.ndarray, triangles: np.ndarray) -> None:
-    """A thin line along the tile's boundary: the edges of a single triangle."""
-    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-    keys = np.sort(edges, axis=1)
-    _, first, count = np.unique(keys, axis=0, return_index=True, return_counts=True)
-    follows = {int(a): int(b) for a, b in edges[first[count == 1]]}
+def _add_outline(scene: bpy.types.Scene, tile: np.ndarray, edges: np.ndarray, thickness: float) -> None:
+    """A line along these edges (s, 2) of the tile's boundary."""
     curve = bpy.data.curves.new("Orbifold Outline", "CURVE")
-    curve.dimensions, curve.bevel_depth, curve.bevel_resolution = "3D", 0.006, 2
-    while follows:
-        start, at = follows.popitem()
-        loop = [start]
-        while at in follows:
-            loop.append(at)
-            at = follows.pop(at)
+    curve.dimensions, curve.bevel_depth, curve.bevel_resolution = "3D", thickness, 2
+    for chain in _chains(edges):
+        closed = chain[0] == chain[-1]
+        places = tile[chain[:-1] if closed else chain]
         spline = curve.splines.new("POLY")
-        spline.points.add(len(loop) - 1)
-        spline.points.foreach_set("co", np.column_stack([tile[loop], np.ones(len(loop))]).ravel())
-        spline.use_cyclic_u = True
-    curve.materials.append(_plain_material("Orbifold Outline", (0.03, 0.03, 0.04), 0.6))
-    scene.collection.objects.link(bpy.data.objects.new("Orbifold Outline", curve))
+        spline.points.add(len(places) - 1)
+        spline.points.foreach_set("co", np.column_stack([places, np.ones(len(places))]).ravel())
+        spline.use_cyclic_u = closed
+    name = "Orbifold Outline"
+    curve.materials.append(bpy.data.materials.get(name) or _plain_material(name, (0.03, 0.03, 0.04), 0.6))
+    scene.collection.objects.link(bpy.data.objects.new(name, curve))
+
+
+def _chains(edges: np.ndarray) -> Iterator[list[int]]:
+    """Directed edges joined to lines, the open ones first; a closed one ends where it begins."""
+    follows = {int(a): int(b) for a, b in edges}
+    starts = sorted(set(follows) - set(follows.values()))
+    while follows:
+        at = starts.pop() if starts else next(iter(follows))
+        chain = [at]
+        while at in follows:
+            at = follows.pop(at)
+            chain.append(at)
+        yield chain
 
 
 # ------------------------------------------------------------------------------------------ small things, light

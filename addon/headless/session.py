@@ -18,10 +18,10 @@ import bpy
 import numpy as np
 
 from .. import blender_mesh, core, faces, materials, pattern
-from ..sphere_map import placed_sphere
+from ..sphere_map import sphere_of
 from .arguments import Arguments, HelpWanted, read_arguments
+from .automatic import automatic_cones
 from .errors import RunError
-from .extremities import farthest_vertices
 from .importers import load_object
 from .picture import Subject, render_picture
 from .sample import make_creature
@@ -29,7 +29,7 @@ from .tiling import make_tiling
 
 EXPECTED = (RunError, core.OrbifoldError, core.MeshFileError, blender_mesh.BlenderMeshError)
 ENDINGS = ("blend", "json", "npz", "png")
-IMAGES = 120  # of the tile, at most: 532 has 60
+IMAGES = 120  # of the tile, at most, but for finite groups: *532 has 120
 TRIANGLES_DRAWN = 1_600_000  # of all images of the tile in the picture, where each is a mesh of its own
 
 
@@ -41,7 +41,7 @@ class Unwrapped:
     result: core.Result
     layout: faces.FaceLayout
     material: bpy.types.Material
-    remark: str  # what could not be made, and why; empty if nothing
+    remarks: list[str]  # what is not as one may expect, and why
 
 
 def run(words: Sequence[str]) -> list[str]:
@@ -51,9 +51,9 @@ def run(words: Sequence[str]) -> list[str]:
         arguments = read_arguments(words)
     except HelpWanted as text:
         return str(text).splitlines()
-    orders = core.parse_signature(arguments.signature).orders
+    signature = core.parse_signature(arguments.signature)
     with _quiet():
-        unwrapped = _unwrap(arguments, len(orders))
+        unwrapped = _unwrap(arguments, signature)
         _write_files(unwrapped, arguments.output)
     return _summary(unwrapped, arguments.output, time.perf_counter() - started)
 
@@ -65,7 +65,7 @@ def one_line(reason: BaseException) -> str:
 # --------------------------------------------------------------------------------------------------- the work
 
 
-def _unwrap(arguments: Arguments, n_cones: int) -> Unwrapped:
+def _unwrap(arguments: Arguments, signature: core.Signature) -> Unwrapped:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     if arguments.mesh is None:
         name, obj = "creature", make_creature()
@@ -75,23 +75,25 @@ def _unwrap(arguments: Arguments, n_cones: int) -> Unwrapped:
     arrays = blender_mesh.read_mesh(obj.data)
     cones = arguments.cones
     if cones is None:
-        cones = farthest_vertices(arrays.vertices, arrays.triangles, n_cones)
+        cones = automatic_cones(arrays.vertices, arrays.triangles, signature)
     result = core.embed(arrays.vertices, arrays.triangles, arguments.signature, cones, arguments.orders,
-                        arguments.weights)
+                        arguments.weights, holes=arguments.holes)
     if not result.report["certificate"]["bijective"]:
         raise RunError("the result is not certified to be a bijection")
     layout = faces.layout_of(result, arrays, result.chart)
-    remark = _write_sphere(obj, arrays, result) if result.geometry == "spherical" else ""
-    return Unwrapped(name, obj, arrays, result, layout, _dress(obj, arrays, result, layout), remark)
+    remarks = faces.remarks(result, layout)
+    if result.geometry == "spherical":
+        remarks += _write_sphere(obj, arrays, result)
+    return Unwrapped(name, obj, arrays, result, layout, _dress(obj, arrays, result, layout), remarks)
 
 
-def _write_sphere(obj: bpy.types.Object, arrays: blender_mesh.MeshArrays, result: core.Result) -> str:
-    """The shape key; on a mesh too coarse for the map onto the whole sphere, why there is none."""
+def _write_sphere(obj: bpy.types.Object, arrays: blender_mesh.MeshArrays, result: core.Result) -> list[str]:
+    """The shape key; where the sphere cannot be covered, or on a mesh too coarse for it, why there is none."""
     try:
-        blender_mesh.write_shape_key(obj, placed_sphere(result.whole_sphere(), arrays))
+        blender_mesh.write_shape_key(obj, sphere_of(result, arrays))
     except core.OrbifoldError as error:
-        return f"no shape key: {one_line(error)}"
-    return ""
+        return [f"no shape key: {one_line(error)}"]
+    return []
 
 
 def _dress(obj: bpy.types.Object, arrays: blender_mesh.MeshArrays, result: core.Result,
@@ -147,12 +149,12 @@ def _subject(unwrapped: Unwrapped) -> Subject:
     limit = IMAGES
     if result.geometry == "hyperbolic":
         limit = min(limit, max(1, TRIANGLES_DRAWN // len(result.cut_triangles)))
-    tiling = make_tiling(result.geometry, result.embedding, result.cut_triangles, result.cut_to_vertex, result.cones,
-                         result.orders, limit)
+    tiling = make_tiling(result, limit)
+    uv = result.tile_uv(result.chart).reshape(-1, 2)[tiling.corners]
     rank = {int(cone): number for number, cone in enumerate(result.cones)}
     return Subject(unwrapped.obj, unwrapped.arrays.vertices, result.cones, tiling,
                    [rank[int(result.cut_to_vertex[corner])] for corner in tiling.cones],
-                   pattern.palette(len(result.cones)) ** 2.2, unwrapped.material, result.uv)
+                   pattern.palette(max(len(result.cones), pattern.LEAST_CENTRES)) ** 2.2, unwrapped.material, uv)
 
 
 def _show_material() -> None:
@@ -165,7 +167,7 @@ def _show_material() -> None:
 
 def _summary(unwrapped: Unwrapped, output: Path, seconds: float) -> list[str]:
     report = unwrapped.result.report
-    cones = ", ".join(str(cone["vertex"]) for cone in report["orbifold"]["cones"])
+    cones = ", ".join(str(cone["vertex"]) for cone in report["orbifold"]["cones"]) or "none"
     files = ", ".join(str(output / f"{unwrapped.name}.{ending}") for ending in ENDINGS)
     return [
         f"{unwrapped.name}: {report['mesh']['vertices']} vertices onto {report['orbifold']['signature']} "
@@ -173,7 +175,7 @@ def _summary(unwrapped: Unwrapped, output: Path, seconds: float) -> list[str]:
         f"certified: a bijection, {report['certificate']['flipped']} flipped triangles, mean quasi-conformal error "
         f"{report['distortion']['quasi_conformal_mean']:.3f}",
         f"wrote {files} in {seconds:.1f} s",
-        *([unwrapped.remark] if unwrapped.remark else []),
+        *unwrapped.remarks,
     ]
 
 

@@ -1,9 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The tile of an embedding and its images under the orbifold's group, for the picture.
-
-One code for the three geometries: a point is three numbers, <a, b> = ax bx + ay by + K az bz, an isometry is a 3 x 3
-matrix (docs/mathematics.md, section 1), and rotations about the copies of the cones generate the group.
-"""
+"""The tile of an embedding and its images under the orbifold's group, for the picture; reflected ones included."""
 
 from __future__ import annotations
 
@@ -11,75 +7,55 @@ from dataclasses import dataclass
 
 import numpy as np
 
-CURVATURE = {"euclidean": 0, "spherical": 1, "hyperbolic": -1}
+from .. import core, group
+from ..charts import CURVATURE
+
+LARGEST_FINITE = 400  # finite groups up to this order are drawn completely
 
 
 @dataclass(frozen=True)
 class Tiling:
     curvature: int
     points: np.ndarray  # (copies, 3) the tile's vertices in the model
-    triangles: np.ndarray  # (m, 3)
-    cones: np.ndarray  # (k,) copies of cones among the points
-    orders: np.ndarray  # (k,) their orders
-    group: list[np.ndarray]  # 3 x 3 matrices; the first is the identity, the tile itself
+    triangles: np.ndarray  # (m, 3) without those of filled holes
+    corners: np.ndarray  # (m, 3) where the triangles' corners are among all the tile's
+    cones: np.ndarray  # (k,) copies of cones and mirror corners among the points
+    outline: np.ndarray  # (s, 2) edges of a single triangle
+    mirrors: np.ndarray  # (s,) bool: which of them lie on a mirror, or on a fixed boundary
+    group: np.ndarray  # (g, 3, 3) matrices; the first is the identity, the tile itself
 
 
-def make_tiling(geometry: str, points: np.ndarray, triangles: np.ndarray, copy_to_vertex: np.ndarray,
-                cones: np.ndarray, orders: np.ndarray, limit: int) -> Tiling:
-    """At most `limit` images of the tile, nearest first (all of a finite group whose order is at most `limit`)."""
-    curvature = CURVATURE[geometry]
-    order_of = dict(zip((int(cone) for cone in cones), (int(order) for order in orders)))
-    corners = np.flatnonzero(np.isin(copy_to_vertex, cones))
-    corner_orders = np.array([order_of[int(copy_to_vertex[corner])] for corner in corners])
-    turns = [rotation(curvature, points[corner], sign * 2 * np.pi / order)
-             for corner, order in zip(corners, corner_orders) for sign in (1, -1)]
-    middle = _onto_model(curvature, points[triangles].mean(axis=(0, 1)))
-    group = _generate(curvature, turns, middle, points[triangles[0]].mean(axis=0), limit)
-    return Tiling(curvature, points, triangles, corners, corner_orders, group)
+def make_tiling(result: core.Result, limit: int) -> Tiling:
+    """At most `limit` images of the tile, nearest first; of a finite group all, up to LARGEST_FINITE."""
+    curvature = CURVATURE[result.geometry]
+    shown = np.arange(len(result.triangles))
+    if result.refined_from is not None:
+        shown = np.flatnonzero(result.refined_from >= 0)
+    triangles = result.cut_triangles[shown]
+    cones = np.flatnonzero(np.isin(result.cut_to_vertex, result.cones))
+    if curvature > 0 and result.signature:
+        limit = max(limit, min(round(2 / core.parse_signature(result.signature).euler), LARGEST_FINITE))
+    tile, _ = group.sample(result.embedding[triangles].reshape(-1, 3), curvature)
+    elements = group.nearest(result.generators, curvature, tile, limit)
+    outline = _single_edges(triangles)
+    border = _single_edges(result.triangles)
+    n = len(result.vertices)
+    mirrors = np.isin(_keys(result.cut_to_vertex[outline], n), _keys(border, n))
+    corners = shown[:, None] * 3 + np.arange(3)
+    return Tiling(curvature, result.embedding, triangles, corners, cones, outline, mirrors, elements)
 
 
-def rotation(curvature: int, point: np.ndarray, angle: float) -> np.ndarray:
-    """The rotation about `point` by `angle`."""
-    c, s = np.cos(angle), np.sin(angle)
-    x, y, z = point
-    turn = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
-    if curvature == 0:
-        shift = np.array([[1, 0, x], [0, 1, y], [0, 0, 1.0]])
-        return shift @ turn @ np.array([[1, 0, -x], [0, 1, -y], [0, 0, 1.0]])
-    if curvature == 1:
-        cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-        return c * np.eye(3) + s * cross + (1 - c) * np.outer(point, point)
-    boost = np.array([[1 + x * x / (1 + z), x * y / (1 + z), x], [x * y / (1 + z), 1 + y * y / (1 + z), y], [x, y, z]])
-    back = boost * np.array([[1, 1, -1], [1, 1, -1], [-1, -1, 1]])
-    return boost @ turn @ back
+def _single_edges(triangles: np.ndarray) -> np.ndarray:
+    """(s, 2) edges of one triangle only, in its direction."""
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    _, first, count = np.unique(
+        _keys(edges, int(triangles.max(initial=0)) + 1), return_index=True, return_counts=True
+    )
+    return edges[first[count == 1]]
 
 
-def _onto_model(curvature: int, point: np.ndarray) -> np.ndarray:
-    if curvature == 0:
-        return point / point[2]
-    return point / np.sqrt(abs(point[0] ** 2 + point[1] ** 2 + curvature * point[2] ** 2))
-
-
-def _generate(curvature: int, turns: list[np.ndarray], middle: np.ndarray, marker: np.ndarray,
-              limit: int) -> list[np.ndarray]:
-    """Products of `turns`, the ones that move `middle` least first. `marker`: a second point, so that elements that
-    agree at the middle are told apart."""
-    probes = np.stack([middle, marker])
-    known = [np.eye(3)]
-    images = [probes]
-    scale = max(float(np.abs(turn @ middle - middle).max()) for turn in turns)
-    at = 0
-    while at < len(known) and len(known) < 4 * limit:
-        for turn in turns:  # g t = (g t g^-1) g: tile g turned about its own image of the corner
-            element = known[at] @ turn
-            image = probes @ element.T
-            gaps = np.abs(np.array(images) - image).max(axis=(1, 2))
-            if gaps.min() > 1e-6 * max(scale, float(np.abs(image).max())):
-                known.append(element)
-                images.append(image)
-        at += 1
-    moved = [float(np.linalg.norm(image[0] - probes[0])) for image in images]
-    return [known[i] for i in np.argsort(moved, kind="stable")[:limit]]
+def _keys(edges: np.ndarray, n: int) -> np.ndarray:
+    return edges.min(1).astype(np.int64) * n + edges.max(1)
 
 
 def drawn(curvature: int, points: np.ndarray) -> np.ndarray:

@@ -40,8 +40,8 @@ class MESH_OT_orbifold_add_cones(ConeOperator, bpy.types.Operator):
     bl_idname = "mesh.orbifold_add_cones"
     bl_label = "Add Cones"
     bl_description = (
-        "Append the selected vertices to the mesh's cones, in the order in which they were clicked. The seams will run "
-        "through the cones in the sequence of the list"
+        "Append the selected vertices to the mesh's cones, in the order in which they were clicked. Vertices on the "
+        "mesh's border are mirror corners. The seams will run through the cones in the sequence of the list"
     )
     edit_mode_only = True
     needs_cones = False

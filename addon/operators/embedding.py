@@ -10,7 +10,7 @@ from typing import Optional
 import bpy
 import numpy as np
 
-from .. import blender_mesh, cones, core, properties
+from .. import arrangement, blender_mesh, cones, core, properties
 
 INTERVAL = 0.05  # seconds between two looks at the job
 
@@ -38,8 +38,10 @@ def select_culprits(context: bpy.types.Context, arrays: blender_mesh.MeshArrays,
         vertices, edges, polygons = nothing, nothing, nothing
         if error.element == "vertex":
             vertices = np.asarray(error.elements, np.int64)
+            vertices = vertices[(vertices >= 0) & (vertices < len(mesh.vertices))]
         elif error.element == "edge":
             pairs = np.asarray(error.elements, np.int64).reshape(-1, 2)
+            pairs = pairs[((pairs >= 0) & (pairs < len(mesh.vertices))).all(1)]
             found = blender_mesh.edge_indices(mesh, pairs)
             edges = found[found >= 0]
             if len(edges) < len(found):  # a diagonal inside a face: its two ends are shown
@@ -57,8 +59,8 @@ class EmbeddingOperator:
 
     signature: bpy.props.StringProperty(
         name="Signature",
-        description="Conway's notation, as 442, 2222 or 22(12): one order for each cone, in the sequence of the list. "
-        "Empty: that of the mesh",
+        description="Conway's notation, as 442, 22(12), *632 or 4*2: one order for each cone, in the sequence of the "
+        "list, and for each mirror corner, along the border. Empty: that of the mesh",
         options={"SKIP_SAVE"},
     )
     weights: bpy.props.EnumProperty(
@@ -68,6 +70,9 @@ class EmbeddingOperator:
             ("cotan", "Cotangent", "Least angle distortion; negative weights are clamped"),
             ("mean-value", "Mean Value", "Positive by themselves, no clamping"),
             ("uniform", "Uniform", "All edges alike: ignores the shape of the triangles"),
+            ("conformal", "Conformal", "Cotangents of the target's own metric: conformal and without flips"),
+            ("delaunay", "Delaunay", "Cotangents on the intrinsic Delaunay triangulation, positive by themselves"),
+            ("mean-value-exact", "Mean Value, Exact", "Floater's weights as they stand, not symmetric: plane only"),
         ),
         default="cotan",
     )
@@ -78,6 +83,14 @@ class EmbeddingOperator:
         min=1e-6,
         max=1.0,
         precision=4,
+    )
+
+    holes: bpy.props.EnumProperty(
+        name="Holes",
+        description="What to do with borders of the mesh that the signature has no mirror for",
+        items=(("mesh", "As in the Sidebar", "The choice that is kept with the mesh"), *properties.HOLES),
+        default="mesh",
+        options={"SKIP_SAVE"},
     )
 
     # ----------------------------------------------------------------------------- what subclasses provide
@@ -106,21 +119,32 @@ class EmbeddingOperator:
 
     def _start(self, context: bpy.types.Context) -> bool:
         obj = context.active_object
-        picked = cones.read_cones(obj.data)
         with blender_mesh.object_mode(obj):
             self._arrays = blender_mesh.read_mesh(obj.data)
-        self._cones = [cone.vertex for cone in picked]
-        text = self.signature or obj.data.orbifold.signature
-        self._changed = text != core.format_signature([cone.order for cone in picked])
+        self._surface = core.topology_of(self._arrays.triangles)
         try:
             self.prepare(context)
-            self._job = core.start_embedding(
-                self._arrays.vertices, self._arrays.triangles, text, self._cones, weights=self.weights, clamp=self.clamp
-            )
+            self._job = self.start(obj.data)
         except (core.OrbifoldError, blender_mesh.BlenderMeshError) as error:
             self._fail(context, error)
             return False
         return True
+
+    def start(self, mesh: bpy.types.Mesh) -> core.EmbeddingJob:
+        """The orbifold of the mesh's cones; with its corners in turn along the border."""
+        picked = cones.read_cones(mesh)
+        self._cones = [cone.vertex for cone in picked]
+        self._text = self.signature or properties.default_signature(mesh)
+        self._changed = self._text != mesh.orbifold.signature
+        read = core.parse_signature(self._text)
+        places = arrangement.arrange(self._cones, self._surface, read.n_mirrors == len(self._surface.loops))
+        sequence = places.matched(read) or range(len(picked))
+        holes = mesh.orbifold.holes if self.holes == "mesh" else self.holes
+        self._extra_borders = len(self._surface.loops) - read.n_mirrors
+        return core.start_embedding(
+            self._arrays.vertices, self._arrays.triangles, self._text, [self._cones[place] for place in sequence],
+            weights=self.weights, clamp=self.clamp, holes=holes,
+        )
 
     def _fail(self, context: bpy.types.Context, error: Exception) -> None:
         sentence = str(error).rstrip(".")
@@ -149,9 +173,9 @@ class EmbeddingOperator:
         return {"FINISHED"}
 
     def _write_orders(self, mesh: bpy.types.Mesh, result: core.Result) -> None:
-        orders = result.orders.tolist()
-        cones.write_cones(mesh, [cones.Cone(vertex, order) for vertex, order in zip(self._cones, orders)])
-        properties.write_signature(mesh, core.format_signature(orders))
+        orders = dict(zip(result.cones.tolist(), result.orders.tolist()))
+        cones.write_cones(mesh, [cones.Cone(vertex, orders[vertex]) for vertex in self._cones])
+        properties.write_signature(mesh, self._text)
 
     # ------------------------------------------------------------------------- waiting: scripts and redo
 
@@ -174,8 +198,11 @@ class EmbeddingOperator:
     # -------------------------------------------------------------------------- modal: a person at a window
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        mesh = context.active_object.data
         if not self.signature:
-            self.signature = context.active_object.data.orbifold.signature
+            self.signature = properties.default_signature(mesh)
+        if self.holes == "mesh":
+            self.holes = mesh.orbifold.holes
         if bpy.app.background or context.window is None:
             return self.execute(context)
         if not self._start(context):

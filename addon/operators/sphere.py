@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 from bpy.props import EnumProperty
 
-from .. import blender_mesh, core, faces, sphere_map
+from .. import blender_mesh, core, faces, properties, sphere_map
 from .embedding import EmbeddingOperator
 from .unwrap import unwrap_problem
 
@@ -16,7 +16,7 @@ def sphere_problem(context: bpy.types.Context) -> str | None:
     problem = unwrap_problem(context)
     if problem is None:
         try:
-            geometry = core.geometry_of(context.active_object.data.orbifold.signature)
+            geometry = core.geometry_of(properties.default_signature(context.active_object.data))
         except core.OrbifoldError as error:
             return str(error)
         if geometry != "spherical":
@@ -47,7 +47,7 @@ class OBJECT_OT_orbifold_sphere(EmbeddingOperator, bpy.types.Operator):
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
-        for name in ("signature", "target", "weights", "clamp"):
+        for name in ("signature", "target", "holes", "weights", "clamp"):
             layout.prop(self, name)
 
     def compute(self, result: core.Result) -> object:
@@ -56,14 +56,14 @@ class OBJECT_OT_orbifold_sphere(EmbeddingOperator, bpy.types.Operator):
                 f"The signature {result.signature} is {result.geometry}, not spherical: choose another, as 432 or 22"
             )
         if self.target == "WHOLE":
-            return sphere_map.placed_sphere(result.whole_sphere(), self._arrays)
+            return sphere_map.sphere_of(result, self._arrays)
         return faces.layout_of(result, self._arrays, result.chart)
 
     def write(self, context: bpy.types.Context, result: core.Result, computed: object) -> str:
         obj = context.active_object
         if self.target == "WHOLE":
             blender_mesh.write_shape_key(obj, computed)
-            return f"Orbifold {result.signature}: the shape key {blender_mesh.SHAPE_KEY} covers the whole sphere."
+            return f"Orbifold {result.signature}: the shape key {blender_mesh.SHAPE_KEY} is on the sphere."
         copy = split_copy(context, obj, self._arrays, computed)
         return f"Orbifold {result.signature}: {copy.name} is split along the seam and has the shape key."
 

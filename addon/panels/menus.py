@@ -5,40 +5,66 @@ from __future__ import annotations
 
 import bpy
 
-from .. import core
+from .. import arrangement, core, previews, properties, surface
 from ..operators.unwrap import UV_OT_orbifold_unwrap
 
+ICON_SCALE = 1.6
 GEOMETRIES = (("euclidean", "Euclidean"), ("spherical", "Spherical"), ("hyperbolic", "Hyperbolic"))
+
+
+def fitting(mesh: bpy.types.Mesh) -> list[core.Signature]:
+    """The signatures that fit the mesh's surface and the vertices in its list. Where holes are to be filled, also
+    those with fewer mirrors. OrbifoldError where there is no native library."""
+    seen = surface.glance(mesh)
+    vertices = [item.vertex for item in mesh.orbifold.cones]
+    places = arrangement.arrange(vertices, seen, True)
+    if seen.components != 1:
+        return []
+    counts = [len(border) for border in places.borders]
+    picked = sum(1 for count in counts if count)
+    fewest = picked if mesh.orbifold.holes == "fill" else len(counts)
+    found: list[core.Signature] = []
+    for mirrors in range(len(counts), fewest - 1, -1):
+        euler = seen.euler + len(counts) - mirrors
+        found += core.fitting_signatures(
+            euler, mirrors, seen.genus, seen.orientable, len(places.cones), counts[:mirrors]
+        )
+    return found
 
 
 class MESH_MT_orbifold_signatures(bpy.types.Menu):
     bl_idname = "MESH_MT_orbifold_signatures"
     bl_label = "Signatures"
-    bl_description = "Signatures that fit the number of cones"
+    bl_description = "Signatures that fit the mesh and the vertices that are picked on it, each with its tile"
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        orders = [cone.order for cone in context.active_object.data.orbifold.cones]
+        mesh = context.active_object.data
+        picks = [(item.vertex, item.order) for item in mesh.orbifold.cones]
         try:
-            offers = core.suggest_signatures(len(orders) or 3)
+            offers = fitting(mesh)
         except core.OrbifoldError as error:
             layout.label(text=str(error), icon="ERROR")
             return
         if not offers:
-            layout.label(text="One cone alone has no orbifold: add another")
-        if orders:  # any order can be typed in the list, which writes it into the signature at once
-            own = core.format_signature(orders)
+            layout.label(text="No orbifold has this surface with these cones and corners: add or remove some")
+        if picks:  # any order can be typed in the list, which writes it into the signature at once
+            own = properties.arranged(mesh, [v for v, _ in picks]).text([order for _, order in picks])
             layout.operator("mesh.orbifold_set_signature", text=f"Orders of the List: {own}").signature = own
             layout.separator()
         row = layout.row()
         for geometry, title in GEOMETRIES:
-            fitting = [offer for offer in offers if offer.geometry == geometry]
-            if fitting:
+            of_it = [offer for offer in offers if offer.geometry == geometry]
+            if of_it:
                 column = row.column()
                 column.label(text=title)
                 column.separator()
-                for offer in fitting:
-                    entry = column.operator("mesh.orbifold_set_signature", text=offer.signature)
+                for offer in of_it:
+                    line = column.row(align=True)
+                    icon = previews.tile(offer.signature)
+                    if icon:
+                        line.template_icon(icon_value=icon, scale=ICON_SCALE)
+                    entry = line.operator("mesh.orbifold_set_signature", text=core.describe(offer.signature))
                     entry.signature = offer.signature
 
 

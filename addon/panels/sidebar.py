@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Optional
 
 import bpy
 
-from .. import core
+from .. import core, properties, surface
 from ..operators.embedding import mesh_problem
 from .menus import MESH_MT_orbifold_signatures
 
@@ -18,26 +19,49 @@ class SignatureState:
     good: bool
 
 
-def signature_state(signature: str, n_cones: int) -> SignatureState:
-    """What the panel says below the signature field."""
+def signature_state(signature: str, n_cones: int, n_corners: int = 0) -> SignatureState:
+    """What the panel says below the signature field, where so many cones and mirror corners are picked."""
     if not signature:
-        return SignatureState("Type the orders of the cones, or pick cones", False)
+        return SignatureState("Type a signature, choose one from the menu, or pick cones", False)
     try:
         read = core.parse_signature(signature)
+        words = core.describe(signature).partition(": ")[2]
     except core.OrbifoldError as error:
         sentence = str(error)
         return SignatureState(sentence[:1].upper() + sentence[1:], False)
     if not read.supported:
-        return SignatureState("This version maps spheres with cones only, without mirrors or handles", False)
-    wanted = len(read.orders)
-    name = f"{read.geometry.capitalize()} orbifold"
-    if n_cones != wanted:
-        difference = wanted - n_cones
-        task = f"add {difference}" if difference > 0 else f"remove {-difference}"
-        return SignatureState(f"{name} of {wanted} cones: {task}", False)
+        return SignatureState(f"This version does not map a mesh onto this orbifold: {words}", False)
+    tasks = _tasks(read.n_interior - n_cones, "cone", "inside", n_corners)
+    tasks += _tasks(len(read.orders) - read.n_interior - n_corners, "mirror corner", "on the border", n_cones)
+    name = f"{read.geometry.capitalize()} {words}"
+    if tasks:
+        return SignatureState(f"{name}: {' and '.join(tasks)}", False)
     if read.curvature > 0:
-        return SignatureState(f"{name}, {round(2 / read.euler)} copies cover the sphere", True)
+        return SignatureState(f"{name}; {round(2 / read.euler)} copies cover the sphere", True)
     return SignatureState(name, True)
+
+
+def _tasks(missing: int, what: str, where: str, others: int) -> list[str]:
+    """How to come to the right number; where there are both kinds of picks, what tells them apart is said too."""
+    if missing == 0:
+        return []
+    ending = "" if abs(missing) == 1 else "s"
+    kind = f" {what}{ending} {where}" if others or what != "cone" else ""
+    return [f"add {missing}{kind}" if missing > 0 else f"remove {-missing}{kind}"]
+
+
+def surface_problem(signature: str, seen: core.Topology) -> Optional[str]:
+    """Why this surface is not that of a signature that parses; None where it is, or may be after filling holes."""
+    read = core.parse_signature(signature)
+    crosscaps = read.n_crosscaps + 2 * read.n_handles if read.n_crosscaps else 0
+    wanted = (crosscaps, False) if crosscaps else (read.n_handles, True)
+    if seen.components != 1:
+        return f"The mesh is in {seen.components} pieces: leave one"
+    if (seen.genus, seen.orientable) != wanted or len(seen.loops) < read.n_mirrors:
+        genus = max(seen.genus, 0)
+        name = core.surface_name(*((genus, 0) if seen.orientable else (0, genus)), len(seen.loops))
+        return f"The signature is not of this mesh, which is a {name}: choose one from the menu"
+    return None
 
 
 class MESH_UL_orbifold_cones(bpy.types.UIList):
@@ -46,7 +70,8 @@ class MESH_UL_orbifold_cones(bpy.types.UIList):
     def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_property, index=0) -> None:
         row = layout.row(align=True)
         split = row.split(factor=0.6)
-        split.label(text=f"{index + 1}.  {item.vertex}", icon="VERTEXSEL")
+        kind = " corner" if item.mirror else ""
+        split.label(text=f"{index + 1}.  {item.vertex}{kind}", icon="MOD_MIRROR" if item.mirror else "VERTEXSEL")
         split.prop(item, "order", text="")
         jump = row.operator("mesh.orbifold_jump_to_cone", text="", icon="RESTRICT_SELECT_OFF", emboss=False)
         jump.index = index
@@ -65,19 +90,21 @@ class OrbifoldPanel:
         if problem is not None:
             layout.label(text=problem, icon="INFO")
             return
-        settings = context.active_object.data.orbifold
-        draw_cones(layout, settings)
-        draw_signature(layout, settings, context.region.width)
+        mesh = context.active_object.data
+        draw_cones(layout, mesh.orbifold)
+        draw_signature(layout, mesh, context.region.width)
         column = layout.column(align=True)
         column.scale_y = 1.3
         column.operator("uv.orbifold_unwrap")
         column.operator("object.orbifold_sphere")
+        if surface.glance(mesh).loops:
+            layout.operator("uv.orbifold_fixed_boundary")
 
 
 def draw_cones(layout: bpy.types.UILayout, settings) -> None:
     layout.operator("mesh.orbifold_add_cones", icon="ADD")
     titles = layout.split(factor=0.5)
-    titles.label(text="Cone, Vertex")
+    titles.label(text="Cone or Corner, Vertex")
     titles.label(text="Order")
     row = layout.row()
     row.template_list(MESH_UL_orbifold_cones.bl_idname, "", settings, "cones", settings, "active_cone", rows=4)
@@ -90,17 +117,28 @@ def draw_cones(layout: bpy.types.UILayout, settings) -> None:
     side.operator("mesh.orbifold_clear_cones", text="", icon="X")
 
 
-def draw_signature(layout: bpy.types.UILayout, settings, width: float) -> None:
-    state = signature_state(settings.signature, len(settings.cones))
+def draw_signature(layout: bpy.types.UILayout, mesh: bpy.types.Mesh, width: float) -> None:
+    settings, seen = mesh.orbifold, surface.glance(mesh)
+    signature = properties.default_signature(mesh)
+    n_corners = sum(item.mirror for item in settings.cones)
+    state = signature_state(signature, len(settings.cones) - n_corners, n_corners)
+    if state.good:
+        problem = surface_problem(signature, seen)
+        state = state if problem is None else SignatureState(problem, False)
     layout.label(text="Signature")
     row = layout.row(align=True)
     row.alert = bool(settings.signature) and not state.good
     row.prop(settings, "signature", text="")
     row.menu(MESH_MT_orbifold_signatures.bl_idname, text="", icon="DOWNARROW_HLT")
+    read = properties.read_signature(signature)
+    extra = len(seen.loops) - (read.n_mirrors if read is not None else 0)
+    if extra > 0:
+        layout.prop(settings, "holes", text=f"{extra} Hole{'s' if extra > 1 else ''}")
     column = layout.column(align=True)
     icon = "CHECKMARK" if state.good else "INFO"
     scale = bpy.context.preferences.system.ui_scale
-    for number, line in enumerate(wrapped(state.text, max(16, int(width / (7.5 * scale)) - 4))):
+    text = state.text if settings.signature or not signature else f"{signature}: {state.text}"
+    for number, line in enumerate(wrapped(text, max(16, int(width / (7.5 * scale)) - 4))):
         column.label(text=line, icon=icon if number == 0 else "BLANK1")
 
 

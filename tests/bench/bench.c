@@ -99,13 +99,12 @@ static void pick_cones(const sample_mesh *mesh, int32_t k, int32_t *cones) {
         }
 }
 
-static void run(const char *name, const sample_mesh *mesh, const char *signature, int32_t k, int rounds) {
-    int32_t cones[MOST_CONES];
+static void run_cones(const char *name, const sample_mesh *mesh, const char *signature, int32_t k, const int32_t *cones,
+                      int rounds) {
     orb_error error;
     orb_mesh_arrays arrays = sample_arrays(mesh);
     orb_request request = orb_request_default();
     request.weights = ORB_WEIGHTS_COTANGENT;
-    pick_cones(mesh, k, cones);
     request.signature = signature;
     request.n_cones = k;
     request.cones = cones;
@@ -131,6 +130,21 @@ static void run(const char *name, const sample_mesh *mesh, const char *signature
            best.seconds_tile, best.seconds_initial, best.seconds_assemble, best.seconds_analyze, best.seconds_factor,
            best.seconds_solve, best.seconds_certify, best.seconds_total, least, best.seconds_total / least);
     fflush(stdout);
+}
+
+static void run(const char *name, const sample_mesh *mesh, const char *signature, int32_t k, int rounds) {
+    int32_t cones[MOST_CONES];
+    pick_cones(mesh, k, cones);
+    run_cones(name, mesh, signature, k, cones, rounds);
+}
+
+/* Disks, a torus, genus 3: surfaces of ../shared/meshes that are no spheres. */
+static void run_surface(const char *name, const char *signature, int32_t k, const int32_t *cones, int rounds) {
+    sample_mesh mesh;
+    if (!sample_read(&mesh, name))
+        return;
+    run_cones(name, &mesh, signature, k, cones, rounds);
+    sample_free(&mesh);
 }
 
 /* Refined until it has at least `least` vertices. */
@@ -168,5 +182,15 @@ int main(int argc, char **argv) {
                 rounds > 0 ? rounds : 1);
         sample_free(&mesh);
     }
+    static const struct {
+        const char *name, *signature;
+        int32_t k, cones[3];
+    } surfaces[] = {{"camelhead.off", "*442", 3, {5307, 8619, 3265}},
+                    {"camelhead.off", "*432", 3, {5307, 8619, 3265}},
+                    {"camelhead.off", "*237", 3, {5307, 8619, 3265}},
+                    {"kitten.obj", "o", 0, {0}},
+                    {"three_holes.off", "ooo", 0, {0}}};
+    for (size_t i = 0; i < sizeof surfaces / sizeof *surfaces; i++)
+        run_surface(surfaces[i].name, surfaces[i].signature, surfaces[i].k, surfaces[i].cones, rounds);
     return 0;
 }

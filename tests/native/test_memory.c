@@ -5,8 +5,7 @@
 #include <stdlib.h>
 
 #include "check.h"
-#include "meshes.h"
-#include "random.h"
+#include "surfaces.h"
 
 static long allocations, failing = -1; /* -1: none fails */
 
@@ -39,17 +38,8 @@ static orb_status use_everything(const sample_mesh *mesh, const orb_request *req
     return status;
 }
 
-static bool filling;
-static orb_weights kind = ORB_WEIGHTS_COTANGENT;
-
-static void fail_each(sample_mesh mesh, const char *signature, int32_t k, const int32_t *cones) {
+static void fail_each_of(sample_mesh mesh, orb_request request) {
     double *room = calloc(6 * (size_t)mesh.n_triangles + 3 * (size_t)mesh.n_vertices, sizeof *room);
-    orb_request request = orb_request_default();
-    request.signature = signature;
-    request.n_cones = k;
-    request.cones = cones;
-    request.weights = kind;
-    request.holes = filling ? ORB_HOLES_FILL : ORB_HOLES_REFUSE;
     CHECK(use_everything(&mesh, &request, room) == ORB_OK);
     long survived = 0, reported = 0;
     for (long n = 0;; n++) {
@@ -71,6 +61,19 @@ static void fail_each(sample_mesh mesh, const char *signature, int32_t k, const 
     sample_free(&mesh);
 }
 
+static orb_request asking(const char *signature, int32_t k, const int32_t *cones) {
+    orb_request request = orb_request_default();
+    request.signature = signature;
+    request.n_cones = k;
+    request.cones = cones;
+    request.weights = ORB_WEIGHTS_COTANGENT;
+    return request;
+}
+
+static void fail_each(sample_mesh mesh, const char *signature, int32_t k, const int32_t *cones) {
+    fail_each_of(mesh, asking(signature, k, cones));
+}
+
 TEST(out_of_memory_in_the_plane) { fail_each(sample_icosphere(1), "442", 3, (int32_t[]){0, 14, 30}); }
 TEST(out_of_memory_with_a_modulus) { fail_each(sample_icosphere(1), "2222", 4, (int32_t[]){0, 14, 30, 3}); }
 TEST(out_of_memory_on_the_sphere) { fail_each(sample_icosphere(1), "432", 3, (int32_t[]){0, 14, 30}); }
@@ -88,9 +91,29 @@ TEST(out_of_memory_on_a_torus) { fail_each(sample_torus(5, 4, 3, 1), "o", 0, (in
 TEST(out_of_memory_with_a_hole) {
     sample_mesh open = sample_icosphere(1);
     open.n_triangles -= 1;
-    filling = true;
-    fail_each(open, "432", 3, (int32_t[]){0, 14, 30});
-    filling = false;
+    orb_request request = asking("432", 3, (int32_t[]){0, 14, 30});
+    request.holes = ORB_HOLES_FILL;
+    fail_each_of(open, request);
+}
+
+static sample_mesh sum_of(sample_mesh a, sample_mesh b) {
+    sample_mesh sum = sample_sum(&a, 0, &b, 0);
+    sample_free(&b);
+    sample_free(&a);
+    return sum;
+}
+
+TEST(out_of_memory_on_a_projective_plane) { fail_each(sample_projective_plane(1), "22x", 2, (int32_t[]){0, 9}); }
+TEST(out_of_memory_on_a_klein_bottle) {
+    fail_each(sum_of(sample_projective_plane(1), sample_projective_plane(1)), "xx", 0, NULL);
+}
+TEST(out_of_memory_with_two_handles) {
+    fail_each(sum_of(sample_torus(4, 4, 2, 1), sample_torus(4, 4, 2, 1)), "oo", 0, NULL);
+}
+TEST(out_of_memory_on_a_polygon) {
+    orb_request request = orb_request_default();
+    request.polygon = &(orb_polygon){.curvature = -1, .n_corners = 5};
+    fail_each_of(sample_rectangle(1, 1.3, 4, 5), request);
 }
 
 /* Vertices moved out, or in the plane, so that edges must be flipped. */
@@ -104,19 +127,21 @@ static sample_mesh rough(sample_mesh mesh, bool flat) {
     return mesh;
 }
 
-static void fail_each_with(orb_weights weights, sample_mesh mesh, const char *signature, const int32_t *cones) {
-    kind = weights;
-    fail_each(mesh, signature, 3, cones);
-    kind = ORB_WEIGHTS_COTANGENT;
+static void fail_each_with(orb_weights weights, sample_mesh mesh, const char *signature, int32_t n_cones,
+                           const int32_t *cones) {
+    orb_request request = asking(signature, n_cones, cones);
+    request.weights = weights;
+    fail_each_of(mesh, request);
 }
 
 TEST(out_of_memory_with_conformal_weights) {
-    fail_each_with(ORB_WEIGHTS_CONFORMAL, rough(sample_icosphere(1), false), "432", (int32_t[]){0, 14, 30});
-    fail_each_with(ORB_WEIGHTS_CONFORMAL, rough(sample_triangle(1, 1, 3), true), "*442", (int32_t[]){0, 1, 2});
+    fail_each_with(ORB_WEIGHTS_CONFORMAL, rough(sample_icosphere(1), false), "432", 3, (int32_t[]){0, 14, 30});
+    fail_each_with(ORB_WEIGHTS_CONFORMAL, rough(sample_triangle(1, 1, 3), true), "*442", 3, (int32_t[]){0, 1, 2});
+    fail_each_with(ORB_WEIGHTS_CONFORMAL, rough(sample_projective_plane(1), false), "22x", 2, (int32_t[]){0, 9});
 }
 TEST(out_of_memory_with_delaunay_weights) {
-    fail_each_with(ORB_WEIGHTS_DELAUNAY, rough(sample_icosphere(1), false), "442", (int32_t[]){0, 14, 30});
+    fail_each_with(ORB_WEIGHTS_DELAUNAY, rough(sample_icosphere(1), false), "442", 3, (int32_t[]){0, 14, 30});
 }
 TEST(out_of_memory_with_exact_mean_values) {
-    fail_each_with(ORB_WEIGHTS_MEAN_VALUE_EXACT, sample_icosphere(1), "442", (int32_t[]){0, 14, 30});
+    fail_each_with(ORB_WEIGHTS_MEAN_VALUE_EXACT, sample_icosphere(1), "442", 3, (int32_t[]){0, 14, 30});
 }

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""docs/orbifolds.md shows every family, its pictures are there and small, and no other file's links lead nowhere."""
+
+import re
+import struct
+
+import pytest
+from conftest import CHECKOUT
+from conway import features
+from families import EUCLIDEAN
+
+PAGE = CHECKOUT / "docs" / "orbifolds.md"
+ROWS = re.findall(r"^\| `([^`]+)` \|.*!\[([^\]]+)\]\(([^)]+)\) \|$", PAGE.read_text(encoding="utf-8"), re.M)
+SPHERICAL_FAMILIES = [
+    *["532", "432", "332", "22N", "NN", "*532", "*432", "*332", "*22N", "*NN", "3*2", "2*N", "N*", "Nx"],
+]
+
+
+def test_every_family_has_a_row():
+    rows = [name for name, _, _ in ROWS]
+    assert rows[:14] == SPHERICAL_FAMILIES and rows[14:31] == EUCLIDEAN and len(rows) >= 41
+    for name, shown, _ in ROWS:
+        n = next((digit for digit in shown if digit not in name), "")
+        assert name.replace("N", n) == shown
+    geometry = [features(shown).geometry for _, shown, _ in ROWS]
+    assert geometry == ["spherical"] * 14 + ["euclidean"] * 17 + ["hyperbolic"] * (len(rows) - 31)
+
+
+@pytest.mark.parametrize("shown, picture", [(shown, picture) for _, shown, picture in ROWS])
+def test_picture_is_there_and_small(shown, picture):
+    path = PAGE.parent / picture
+    head = path.read_bytes()[:24]
+    assert head[:8] == b"\x89PNG\r\n\x1a\n"
+    width, height = struct.unpack(">II", head[16:])
+    assert width <= 960 and height <= 540 and path.stat().st_size < 200_000
+
+
+def test_pictures_are_small_in_all_and_each_is_shown():
+    pictures = sorted((PAGE.parent / "orbifolds").iterdir())
+    assert sum(path.stat().st_size for path in pictures) < 6_000_000
+    assert {path.name for path in pictures} == {picture.partition("/")[2] for _, _, picture in ROWS}
+
+
+def test_links_lead_somewhere():
+    for page in [CHECKOUT / "README.md", *(CHECKOUT / "docs").glob("*.md")]:
+        for link in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8")):
+            if not re.match(r"[a-z]+:", link):
+                assert (page.parent / link).exists(), f"{page.name}: {link}"

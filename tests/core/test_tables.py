@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every orbifold of both tables, and a wide choice of hyperbolic ones, on two meshes of its topology: certified by the
+library and judged by check_layout.py."""
+
+import pytest
+from conway import features
+from families import EUCLIDEAN, HYPERBOLIC, SPHERICAL, cases, mesh_named
+from judged import verdict
+from picks import picks_for
+
+import core
+
+
+def embedded(signature, name, start=0.1, **options):
+    wanted = features(signature)
+    vertices, triangles = mesh_named(wanted.topology, name)
+    return core.embed(vertices, triangles, signature, picks_for(vertices, triangles, wanted, start), **options)
+
+
+def check(signature, name, folder):
+    result, wanted = embedded(signature, name), features(signature)
+    report = result.report
+    assert report["certificate"]["flipped"] == 0 and report["certificate"]["seam_residual"] < 1e-7
+    assert report["orbifold"]["euler"] == pytest.approx(float(wanted.euler), abs=1e-12)
+    assert result.geometry == report["orbifold"]["geometry"] == wanted.geometry
+    mirrors = [False] * len(wanted.cones) + [True] * (len(wanted.orders) - len(wanted.cones))
+    assert [(cone["order"], cone["mirror"]) for cone in report["orbifold"]["cones"]] == [*zip(wanted.orders, mirrors)]
+    handles, crosscaps, boundaries = wanted.topology
+    assert report["mesh"]["boundary_loops"] == boundaries and report["mesh"]["genus"] == handles + crosscaps
+    said = verdict(result, folder)
+    assert said["ok"], said["why"]
+    assert said["harmonic_residual"] < 1e-6 and report["solver"]["relative_gradient"] < 1e-6
+
+
+@pytest.mark.parametrize("signature, mesh", cases(SPHERICAL))
+def test_spherical(signature, mesh, tmp_path):
+    check(signature, mesh, tmp_path)
+
+
+@pytest.mark.parametrize("signature, mesh", [*cases(EUCLIDEAN), ("o", "kitten.obj")])
+def test_euclidean(signature, mesh, tmp_path):
+    check(signature, mesh, tmp_path)
+
+
+@pytest.mark.parametrize("signature, mesh", cases(HYPERBOLIC))
+def test_hyperbolic(signature, mesh, tmp_path):
+    check(signature, mesh, tmp_path)
+
+
+def test_the_tables_are_complete():
+    for signatures, geometry in ((SPHERICAL, "spherical"), (EUCLIDEAN, "euclidean"), (HYPERBOLIC, "hyperbolic")):
+        assert len(set(signatures)) == len(signatures)
+        assert {features(signature).geometry for signature in signatures} == {geometry}
+    assert len(EUCLIDEAN) == 17 and len(SPHERICAL) == 3 * 7 + 7
