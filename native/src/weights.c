@@ -19,7 +19,7 @@ static bool triangle_cotangents(const triangle_shape *shape, double cot[3]) {
     return true;
 }
 
-/* part[c][k]: what the triangle adds to the mean-value weight of half-edge c at its start (k = 0) and at its end (k = 1):
+/* part[c][k]: what the triangle adds to the mean-value weight of half-edge c at its start (k = 0) and its end (k = 1),
  * tan(half of the angle there) / length. Infinite or NaN where an angle is pi or a length is zero. */
 static void triangle_mean_values(const triangle_shape *shape, double part[3][2]) {
     double tangent[3]; /* of half the angle at corner c */
@@ -283,9 +283,10 @@ orb_status weights_compute(const orb_mesh *mesh, const orb_request *request, dou
         status = given_weights(mesh, request, weights, error);
         break;
     default:
-        status = error_set(error, ORB_BAD_ARGUMENT,
-                           "the kind of weights is %d: choose cotangent, mean-value, uniform, given, conformal or Delaunay",
-                           (int)request->weights);
+        status =
+            error_set(error, ORB_BAD_ARGUMENT,
+                      "the kind of weights is %d: choose cotangent, mean-value, uniform, given, conformal or Delaunay",
+                      (int)request->weights);
     }
     if (n_clamped)
         *n_clamped = counted;
