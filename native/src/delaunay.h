@@ -33,12 +33,13 @@ typedef struct orb_mirrors {
 } orb_mirrors;
 
 /* The triangulation that the mesh has, with its copies and lengths[n_edges] (longest around 1), flipped until it is
- * Delaunay but for edges marked in keep[n_edges] (may be NULL), edges on the boundary that is no mirror, edges whose two ends are both
- * `special` [n_vertices] and whose two triangles lie in different frames, and those whose flip would leave a vertex
- * that is not special with fewer than three edges. Special is a vertex that some element of the
- * group fixes: a cone, or a vertex on a mirror. Lengths that break the triangle inequality are tolerated: there an edge
- * is flipped as in Ptolemy's theorem. An edge on a mirror is, in the surface doubled there, flipped to one between a
- * vertex and its mirror image; that comes last, and no flip follows it. `mirrors` may be NULL. `copies` are only read. Error: ORB_OUT_OF_MEMORY. */
+ * Delaunay but for edges marked in keep[n_edges] (may be NULL), edges on the boundary that is no mirror, edges whose
+ * two ends are both `special` [n_vertices] and whose two triangles lie in different frames, and those whose flip
+ * would leave a vertex that is not special with fewer than three edges. Special is a vertex that some element of the
+ * group fixes: a cone, or a vertex on a mirror. Lengths that break the triangle inequality are tolerated: there an
+ * edge is flipped as in Ptolemy's theorem. An edge on a mirror is, in the surface doubled there, flipped to one
+ * between a vertex and its mirror image; that comes last, and no flip follows it. `mirrors` may be NULL. `copies` are
+ * only read. Error: ORB_OUT_OF_MEMORY. */
 orb_status delaunay_create(const orb_mesh *mesh, const orb_geometry *geometry, const orb_copies *copies,
                            const double *lengths, const uint8_t *keep, const bool *special, const orb_mirrors *mirrors,
                            orb_delaunay **delaunay, orb_error *error);

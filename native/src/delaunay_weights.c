@@ -17,10 +17,11 @@ static bool triangle_cotangents(const orb_delaunay *d, const double *original, i
     return sides_angles(length, angle, cotangent) || (is_input && sides_angles(before, angle, cotangent));
 }
 
-/* Three parts, one for each side of a triangle, half a cotangent each; where side c is flipped across a mirror, those of
- * the halves of p r' r and q r r' that lie here, p and q being the ends of side c and r' the mirror image of the corner
- * r across. With a and b the angles at p and q these are tan(a) / 2 for p r, tan(b) / 2 for q r, and half of the
- * double's (cot 2a + cot 2b) / 2 for r r'. (No two sides of a triangle are flipped so: only one angle is obtuse.) */
+/* Three parts, one for each side of a triangle, half a cotangent each; where side c is flipped across a mirror, those
+ * of the halves of p r' r and q r r' that lie here, p and q being the ends of side c and r' the mirror image of the
+ * corner r across. With a and b the angles at p and q these are tan(a) / 2 for p r, tan(b) / 2 for q r, and half of
+ * the double's (cot 2a + cot 2b) / 2 for r r'. (No two sides of a triangle are flipped so: only one angle is obtuse.)
+ * */
 static void triangle_parts(const orb_delaunay *d, int32_t t, const double cotangent[3], double part[3]) {
     for (int c = 0; c < 3; c++)
         part[c] = 0.5 * cotangent[c];

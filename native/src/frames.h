@@ -19,7 +19,8 @@ orb_copies *frames_copies(orb_frames *frames);
 orb_status frames_carry(orb_frames *frames, int32_t here, int32_t there, int32_t copy, int32_t *carried,
                         orb_error *error);
 
-/* *reflected: `copy` reflected in the mirror through `here`, whose vertex's own copy lies on the line of `reflection`. */
+/* *reflected: `copy` reflected in the mirror through `here`, whose vertex's own copy lies on the line of
+ * `reflection`. */
 orb_status frames_reflect(orb_frames *frames, int32_t here, orb_isometry reflection, int32_t copy, int32_t *reflected,
                           orb_error *error);
 

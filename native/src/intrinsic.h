@@ -24,8 +24,8 @@ typedef struct orb_intrinsic {
     orb_copies *base;          /* the copies of the mesh's corners, without those that flips add */
 } orb_intrinsic;
 
-/* `problem` says which vertices slide on mirrors. Takes embedding->copies over. `conformal`: the orbifold's metric; a fixed polygon has
- * none, and gets the mesh's. */
+/* `problem` says which vertices slide on mirrors. Takes embedding->copies over. `conformal`: the orbifold's metric; a
+ * fixed polygon has none, and gets the mesh's. */
 orb_status intrinsic_create(orb_embedding *embedding, const orb_problem *problem, bool conformal,
                             orb_intrinsic **intrinsic, orb_error *error);
 void intrinsic_free(orb_intrinsic *intrinsic);
@@ -35,8 +35,8 @@ void intrinsic_free(orb_intrinsic *intrinsic);
 orb_status intrinsic_triangulate(orb_intrinsic *intrinsic, orb_embedding *embedding, double clamp, orb_problem *problem,
                                  orb_error *error);
 
-/* Keeps the edges of flipped triangles [n_triangles] and of their neighbours (which saves a round). True if that changes
- * anything. */
+/* Keeps the edges of flipped triangles [n_triangles] and of their neighbours (which saves a round). True if that
+ * changes anything. */
 bool intrinsic_keep(orb_intrinsic *intrinsic, const orb_mesh *mesh, const bool *flipped);
 void intrinsic_keep_all(orb_intrinsic *intrinsic, const orb_mesh *mesh);
 

@@ -15,8 +15,8 @@
 orb_status weights_compute(const orb_mesh *mesh, const orb_request *request, double *weights, int64_t *n_clamped,
                            orb_error *error);
 
-/* Mean-value weights as they stand, not symmetric: weights[mesh->n_edges*2], for each edge the weight at the vertex that
- * edge_halfedge leaves, then that at the other one. Errors: ORB_ZERO_AREA_TRIANGLE, as above. */
+/* Mean-value weights as they stand, not symmetric: weights[mesh->n_edges*2], for each edge the weight at the vertex
+ * that edge_halfedge leaves, then that at the other one. Errors: ORB_ZERO_AREA_TRIANGLE, as above. */
 orb_status weights_mean_value_both(const orb_mesh *mesh, double *weights, orb_error *error);
 
 #endif
