@@ -204,10 +204,12 @@ def check_the_panel_says_what_is_missing():
     assert "remove 1 cone inside" in sidebar.signature_state("*632", 1, 3).text
     good = sidebar.signature_state("4*2", 1, 1)
     assert good.good and "cone of 90 degrees and a mirror corner of 90 degrees" in good.text
-    assert sidebar.surface_problem("o", surface.read(torus().data)) is None
-    assert "torus" in sidebar.surface_problem("442", surface.read(torus().data))
-    assert sidebar.surface_problem("442", surface.read(holed_blob().data)) is None  # its holes may be filled
-    assert "annulus" in sidebar.surface_problem("***", surface.read(annulus().data))
+    assert sidebar.surface_problem("o", surface.read(torus().data), "refuse") is None
+    assert "torus" in sidebar.surface_problem("442", surface.read(torus().data), "fill")
+    seen = surface.read(holed_blob().data)
+    assert sidebar.surface_problem("442", seen, "fill") is None
+    assert "borders" in sidebar.surface_problem("442", seen, "refuse")
+    assert "annulus" in sidebar.surface_problem("***", surface.read(annulus().data), "refuse")
 
 
 # ------------------------------------------------------------------------------------------------- unwrapping
