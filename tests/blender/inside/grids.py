@@ -45,7 +45,8 @@ def annulus(quads: bool = False) -> Mesh:
 def mobius(quads: bool = False) -> Mesh:
     def place(u: float, v: float) -> tuple[float, float, float]:
         across = 0.3 * (v - np.pi)
-        return (2 + across * np.cos(u / 2)) * np.cos(u), (2 + across * np.cos(u / 2)) * np.sin(u), across * np.sin(u / 2)
+        radius = 2 + across * np.cos(u / 2)
+        return radius * np.cos(u), radius * np.sin(u), across * np.sin(u / 2)
 
     return grid(30, 6, "~-", place, quads)
 
