@@ -139,7 +139,7 @@ def draw_signature(layout: bpy.types.UILayout, mesh: bpy.types.Mesh, width: floa
         layout.prop(settings, "holes", text="")
     column = layout.column(align=True)
     icon = "CHECKMARK" if state.good else "INFO"
-    scale = bpy.context.preferences.system.ui_scale
+    scale = bpy.context.preferences.system.ui_scale or 1.0  # 0 without a window
     text = state.text if settings.signature or not signature else f"{signature}: {state.text}"
     for number, line in enumerate(wrapped(text, max(16, int(width / (7.5 * scale)) - 4))):
         column.label(text=line, icon=icon if number == 0 else "BLANK1")

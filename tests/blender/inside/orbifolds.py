@@ -3,6 +3,7 @@
 
 import os
 import sys
+from types import SimpleNamespace
 
 import bmesh
 import bpy
@@ -167,6 +168,51 @@ def check_the_panel_says_what_is_missing():
     assert sidebar.surface_problem("442", seen, "fill") is None
     assert "borders" in sidebar.surface_problem("442", seen, "refuse")
     assert "annulus" in sidebar.surface_problem("***", surface.read(annulus().data), "refuse")
+
+
+class Recorder:
+    """A layout that notes what is drawn."""
+
+    def __init__(self):
+        self.__dict__["drawn"] = []
+
+    def __setattr__(self, name, value):
+        pass
+
+    def __getattr__(self, name):
+        def draw(*arguments, **settings):
+            self.drawn.append((name, arguments, settings))
+            return self
+
+        return draw
+
+    def texts(self):
+        return [settings["text"] for _, _, settings in self.drawn if settings.get("text")]
+
+
+def drawn(cls, obj):
+    owner = SimpleNamespace(layout=Recorder())
+    cls.draw(owner, SimpleNamespace(active_object=obj, region=SimpleNamespace(width=300)))
+    return owner.layout
+
+
+def check_menu_and_panel_are_drawn():
+    menu, panel = part("panels.menus").MESH_MT_orbifold_signatures, part("panels.sidebar").OrbifoldPanel
+    obj = disk()
+    properties.set_cones(obj.data, on_the_border(obj, 3), [4, 4, 2])
+    texts = drawn(menu, obj).texts()
+    assert "Orders of the List: *442" in texts and "Spherical" in texts
+    assert "*632: disk with mirror corners of 30, 60 and 90 degrees" in texts
+    assert not any("without a mirror" in text for text in drawn(panel, obj).texts())
+    assert ("operator", ("uv.orbifold_fixed_boundary",), {}) in drawn(panel, obj).drawn
+    obj = holed_blob()
+    properties.set_cones(obj.data, inside_of(obj), [4, 4, 2])
+    layout = drawn(panel, obj)
+    assert "2 borders without a mirror:" in layout.texts()
+    assert any(name == "prop" and arguments[1] == "holes" for name, arguments, _ in layout.drawn)
+    for make in (torus, klein, blob, annulus):
+        drawn(panel, make())
+        drawn(menu, make())
 
 
 # ------------------------------------------------------------------------------------------------- unwrapping
