@@ -11,7 +11,10 @@
 #include "modulus.h"
 #include "weights.h"
 
-enum { MOST_ROUNDS = 8 }; /* of solving and mending */
+enum {
+    MOST_ROUNDS = 8,      /* of solving and mending */
+    MANY_VERTICES = 40000 /* of a real system: from here on METIS's ordering saves more than it costs */
+};
 
 /* Without symmetry there is no energy, so a plane is needed, where the balance of forces is a linear system; and the
  * forces add up to nothing only if something takes up the rest, a cone, a corner or a fixed boundary. */
@@ -51,10 +54,11 @@ orb_status solve_set_up(orb_workshop *work, orb_error *error) {
         return status;
     double built = monitor_clock();
     if (!work->order) { /* else it is that of nearly the same edges */
+        bool slow = !work->system->is_complex && work->system->n_free > MANY_VERTICES;
         work->order = malloc(((size_t)work->system->n_free + 1) * sizeof *work->order);
         if (!work->order)
             return error_memory(error);
-        status = cholesky_order(&work->system->blocks, ORDERING_AMD, work->order, error);
+        status = cholesky_order(&work->system->blocks, slow ? ORDERING_METIS : ORDERING_AMD, work->order, error);
     }
     work->embedding->report.seconds_assemble += built - start;
     work->embedding->report.seconds_analyze += monitor_clock() - built;
