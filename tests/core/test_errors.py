@@ -129,9 +129,9 @@ def test_cone_count(cones):
         ("412", CONES, "ORB_BAD_ORDER", None),
         ("23", [0, 1], "ORB_BAD_ORBIFOLD", None),
         ("7", [0], "ORB_BAD_ORBIFOLD", None),
-        ("*442", CONES, "ORB_UNSUPPORTED_SIGNATURE", None),
-        ("o", [], "ORB_UNSUPPORTED_SIGNATURE", None),
-        ("4*2", [0, 1], "ORB_UNSUPPORTED_SIGNATURE", None),
+        ("*442", CONES, "ORB_BOUNDARY", None),
+        ("o", [], "ORB_WRONG_GENUS", None),
+        ("4*2", [0, 1], "ORB_BOUNDARY", None),
     ],
 )
 def test_signature(signature, cones, status, elements):
