@@ -189,7 +189,7 @@ typedef struct orb_report {
     double relative_gradient; /* max over vertices of |g_v| / sum_j w_vj d_vj */
     int64_t clamped_weights, factor_nonzeros;
     int64_t flipped, flipped_float32;     /* the second: UVs of the default chart rounded to float */
-    double seam_residual;                 /* relative to the median edge */
+    double seam_residual;                 /* relative to the edge or the median edge, whichever is longer */
     double angle_residual, area_residual; /* radians; relative (0 in the plane) */
     double quasi_conformal_mean, quasi_conformal_median, quasi_conformal_max; /* area weighted on the mesh */
     double log_area_std;        /* area-weighted standard deviation of log(area on the tile / area on the mesh) */

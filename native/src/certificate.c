@@ -8,7 +8,7 @@
 #include "triangle.h"
 
 static const double pi = 3.14159265358979323846;
-static const double seam_tolerance = 1e-8;  /* of the median edge */
+static const double seam_tolerance = 1e-8;  /* of the edge, or the median edge */
 static const double angle_tolerance = 1e-7; /* radians */
 static const double area_tolerance = 1e-7;  /* relative */
 
@@ -73,34 +73,41 @@ static orb_status check_orientation(orb_embedding *embedding, orb_error *error) 
                               (long long)flipped, flipped == 1 ? "triangle is" : "triangles are", (int)named[0]);
 }
 
-/* Both copies of every edge have one length. */
-static orb_status check_seams(orb_embedding *embedding, orb_error *error) {
+/* The length of an edge as the triangles on both of its sides have it. */
+static void edge_lengths(const orb_embedding *embedding, int32_t e, double side[2]) {
     const orb_mesh *mesh = embedding->mesh;
     const int32_t *triangles = embedding->copies->triangles;
-    double *lengths = malloc(((size_t)mesh->n_edges + 1) * sizeof *lengths);
+    int32_t h = mesh->edge_halfedge[e], twin = mesh->twin[h] < 0 ? h : mesh->twin[h];
+    const int32_t ends[2][2] = {{triangles[h], triangles[halfedge_next(h)]},
+                                {triangles[halfedge_next(twin)], triangles[twin]}};
+    for (int k = 0; k < 2; k++)
+        side[k] = geometry_distance(embedding->tile->geometry, embedding->placed[ends[k][0]],
+                                    embedding->placed[ends[k][1]]);
+}
+
+/* Both copies of every edge have one length, relative to the edge itself or the median one, whichever is longer. */
+static orb_status check_seams(orb_embedding *embedding, orb_error *error) {
+    const orb_mesh *mesh = embedding->mesh;
+    double *lengths = malloc(((size_t)mesh->n_edges + 1) * sizeof *lengths), side[2], gap = 0;
     if (!lengths)
         return error_memory(error);
-    double gap = 0;
-    int32_t worst[2] = {0, 0};
     for (int32_t e = 0; e < mesh->n_edges; e++) {
-        int32_t h = mesh->edge_halfedge[e], twin = mesh->twin[h] < 0 ? h : mesh->twin[h];
-        int32_t ends[2][2] = {{triangles[h], triangles[halfedge_next(h)]},
-                              {triangles[halfedge_next(twin)], triangles[twin]}};
-        double side[2];
-        for (int k = 0; k < 2; k++)
-            side[k] = geometry_distance(embedding->tile->geometry, embedding->placed[ends[k][0]],
-                                        embedding->placed[ends[k][1]]);
+        edge_lengths(embedding, e, side);
         lengths[e] = side[0];
-        double difference = fabs(side[0] - side[1]);
-        if (difference > gap || difference != difference) {
-            gap = difference;
-            worst[0] = halfedge_from(mesh, h);
-            worst[1] = halfedge_to(mesh, h);
-        }
     }
     double median = select_kth(lengths, mesh->n_edges, mesh->n_edges / 2);
     free(lengths);
-    embedding->report.seam_residual = gap / median;
+    int32_t worst[2] = {0, 0};
+    for (int32_t e = 0; e < mesh->n_edges; e++) {
+        edge_lengths(embedding, e, side);
+        double difference = fabs(side[0] - side[1]) / fmax(median, side[0]);
+        if (difference > gap || difference != difference) {
+            gap = difference;
+            worst[0] = halfedge_from(mesh, mesh->edge_halfedge[e]);
+            worst[1] = halfedge_to(mesh, mesh->edge_halfedge[e]);
+        }
+    }
+    embedding->report.seam_residual = gap;
     if (embedding->report.seam_residual < seam_tolerance)
         return ORB_OK;
     return error_set_elements(error, ORB_CERTIFICATE_FAILED, ORB_EDGE, worst, 2, 1,
