@@ -23,7 +23,7 @@ import core
 )
 def test_many_cones(file, signature, tmp_path):
     mesh = core.read_mesh(shared_file("meshes", file))
-    result = core.embed(*mesh, signature, picks_for(*mesh, features(signature)))
+    result = core.embed(*mesh, signature, picks_for(*mesh, features(signature)), weights="cotan")
     said = verdict(result, tmp_path)
     assert said["ok"], said["why"]
 
@@ -49,7 +49,7 @@ def finger(length, rings=3):
 def test_a_limb_inside_mirrors(signature, tmp_path):
     """The tile's edges at the tip are 1e-14 long where no cone is; in single precision its triangles are lost."""
     mesh = shapes.roughened(finger(30), flips=0.1)
-    result = core.embed(*mesh, signature, picks_for(*mesh, features(signature)))
+    result = core.embed(*mesh, signature, picks_for(*mesh, features(signature)), weights="cotan")
     said = verdict(result, tmp_path)
     assert said["ok"], said["why"]
 
@@ -58,5 +58,6 @@ def test_a_limb_inside_mirrors(signature, tmp_path):
 def test_a_limb_that_is_out_of_the_judge_s_sight(signature):
     """Edges of 1e-22: past the long doubles of check_layout.py, not past the library's certificate."""
     mesh = shapes.roughened(finger(50), flips=0.1)
-    certificate = core.embed(*mesh, signature, picks_for(*mesh, features(signature))).report["certificate"]
+    result = core.embed(*mesh, signature, picks_for(*mesh, features(signature)), weights="cotan")
+    certificate = result.report["certificate"]
     assert certificate["flipped"] == 0 and certificate["seam_residual"] < 1e-7

@@ -14,7 +14,8 @@ import core
 def embedded(signature, name, start=0.1, **options):
     wanted = features(signature)
     vertices, triangles = mesh_named(wanted.topology, name)
-    return core.embed(vertices, triangles, signature, picks_for(vertices, triangles, wanted, start), **options)
+    picked = picks_for(vertices, triangles, wanted, start)
+    return core.embed(vertices, triangles, signature, picked, weights="cotan", **options)
 
 
 def check(signature, name, folder):
