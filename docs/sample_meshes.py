@@ -135,7 +135,7 @@ def leaf(n=44):
     """A disk: its rim is longer than a flat one's, and goes up and down."""
     radius, angle, triangles = rings(n)
     bowl = 0.45 * radius**2 + 0.16 * radius**3 * np.sin(5 * angle)
-    return np.stack([radius * np.cos(angle), radius * np.sin(angle), bowl], 1) * [1.2, 0.9, 1.1], triangles
+    return np.stack([1.2 * radius * np.cos(angle), -1.1 * bowl, radius * np.sin(angle)], 1), triangles
 
 
 def boy(n=40):
