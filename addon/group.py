@@ -4,6 +4,10 @@
 Points are three coordinates and isometries 3 x 3 matrices (docs/mathematics.md, section 1), the same for the three
 geometries, reflections and glides included. The library's generators carry the tile to its neighbours, so that g s is
 the neighbour of tile g across the side of s, and every tile near another is reached through tiles near by.
+
+A tile of the hyperbolic plane may have long thin spikes, so that very many reach into any neighbourhood. There the
+tile's middle c stands for it: every point of the plane has an image of c within `radius`, so that every image of c
+near by is reached in steps of at most twice that.
 """
 
 from __future__ import annotations
@@ -33,44 +37,70 @@ def sample(points: np.ndarray, curvature: int, count: int = SAMPLES) -> tuple[np
             return points[chosen], float(gap[at])
 
 
-def near(generators: np.ndarray, curvature: int, tile: np.ndarray, seen: np.ndarray, reach: float) -> np.ndarray:
-    """(g, 3, 3) the elements, the identity first, that carry one of the points `tile` (p, 3) to within `reach` of one
-    of the points `seen`; at most about CAP of them."""
-    known, probes = np.eye(3)[None], _probes(tile, curvature)
-    places = probes.reshape(1, 9)
-    moves = with_inverses(generators, curvature)
-    steps = np.abs(_places(moves, probes) - places).max(1)
-    moves, steps = moves[steps > 1e-9], steps[steps > 1e-9]
-    start = 0
-    for _ in range(LEVELS if len(moves) else 0):
-        fresh = known[start:]
-        if not len(fresh) or len(known) >= CAP:
-            break
-        start = len(known)
-        products = (fresh[:, None] @ moves[None]).reshape(-1, 3, 3)
-        both = np.concatenate([places, _places(products, probes)])
-        new = distinct(both, 1e-3 * float(steps.min()))
-        new = new[new >= start] - start
-        products = products[new]
-        products = products[_is_near(products, curvature, tile, seen, reach)]
-        known = np.concatenate([known, products])
-        places = np.concatenate([places, _places(products, probes)])
-    return known
+class Group:
+    """Of a tile whose triangles have the corners `points` (n, 3)."""
 
+    def __init__(self, generators: np.ndarray, curvature: int, points: np.ndarray) -> None:
+        self.curvature = curvature
+        self.tile, self.gap = sample(points, curvature)  # no point of the tile is farther than gap from these
+        self.radius = self.gap
+        self._probes = _probes(self.tile, curvature)
+        self._centres, self._moves = self.tile, with_inverses(generators, curvature)
+        self._around = np.eye(3)[None]
+        if curvature < 0 and len(generators):
+            self._step_between_middles()
 
-def nearest(generators: np.ndarray, curvature: int, tile: np.ndarray, limit: int) -> np.ndarray:
-    """(g, 3, 3) the `limit` elements that move the middle of the tile least, the identity first; of a finite group
-    perhaps all."""
-    middle = on_model(tile.mean(0), curvature)[None]
-    reach = float(distances(tile, middle, curvature).max())
-    found = near(generators, curvature, tile, middle, reach)
-    while True:
-        moved = distances(found @ middle[0], middle, curvature)[:, 0]
-        whole = curvature > 0 and reach > np.pi
-        if (moved <= reach).sum() >= limit or whole or not len(generators) or len(found) >= CAP:
-            return found[np.argsort(np.where(np.arange(len(found)), moved, -1.0), kind="stable")[:limit]]
-        reach *= 1.25
-        found = near(generators, curvature, tile, middle, reach)
+    def _step_between_middles(self) -> None:
+        middle = self.tile[:1]
+        neighbours = self._grow(self.tile, np.full(len(self.tile), self.gap))
+        to_middle = distances(self.tile, neighbours @ middle[0], self.curvature).min(1)
+        self.radius = float(to_middle.max()) + self.gap
+        self._around = self._grow(middle, np.array([2 * self.radius + self.gap]))
+        steps = distances(self._around @ middle[0], middle, self.curvature)[:, 0]
+        self._moves, self._centres = self._around[steps <= 2 * self.radius + 1e-6], middle
+
+    def near(self, seen: np.ndarray, reach: float | np.ndarray) -> np.ndarray:
+        """(g, 3, 3) elements, the identity first, at most about CAP. All images that `representative` of a point has
+        within `reach` of one of the points `seen` (s, 3), each with its own or all with the same, come from them."""
+        return self._grow(seen, np.broadcast_to(reach, len(seen)) + self.radius)
+
+    def representative(self, point: np.ndarray) -> np.ndarray:
+        """The image of a point of the tile that is nearest to its middle, or in the sphere and the plane the point."""
+        images = self._around @ point
+        return images[int(np.argmin(distances(images, self.tile[:1], self.curvature)))]
+
+    def nearest(self, limit: int) -> np.ndarray:
+        """(g, 3, 3) the `limit` elements that move the middle of the tile least, the identity first; of a finite group
+        perhaps all."""
+        middle = self.tile[:1]
+        reach = float(distances(self.tile, middle, self.curvature).max())
+        while True:
+            found = self.near(middle, reach)
+            moved = distances(found @ middle[0], middle, self.curvature)[:, 0]
+            whole = self.curvature > 0 and reach > np.pi
+            if (moved <= reach).sum() >= limit or whole or not len(self._moves) or len(found) >= CAP:
+                moved[0] = -1.0
+                return found[np.argsort(moved, kind="stable")[:limit]]
+            reach *= 1.25
+
+    def _grow(self, seen: np.ndarray, reach: np.ndarray) -> np.ndarray:
+        """The elements that carry one of the centres to within reach of what is seen, each from one before it."""
+        known = fresh = np.eye(3)[None]
+        places = self._probes.reshape(1, 9)
+        steps = np.abs(_places(self._moves, self._probes) - places).max(1)
+        moves, steps = self._moves[steps > 1e-9], steps[steps > 1e-9]
+        for _ in range(LEVELS if len(moves) else 0):
+            if not len(fresh) or len(known) >= CAP:
+                break
+            products = (fresh[:, None] @ moves[None]).reshape(-1, 3, 3)
+            both = np.concatenate([places, _places(products, self._probes)])
+            new = distinct(both, 1e-3 * float(steps.min()))
+            new = new[new >= len(places)]
+            products = products[new - len(places)]
+            places = both[np.concatenate([np.arange(len(places)), new])]
+            fresh = products[_is_near(products, self.curvature, self._centres, seen, reach)]
+            known = np.concatenate([known, fresh])
+        return known
 
 
 def with_inverses(generators: np.ndarray, curvature: int) -> np.ndarray:
@@ -113,23 +143,27 @@ def distances(points: np.ndarray, others: np.ndarray, curvature: int) -> np.ndar
     return 2 * (np.arcsin(np.minimum(chord / 2, 1.0)) if curvature > 0 else np.arcsinh(chord / 2))
 
 
-def _is_near(elements: np.ndarray, curvature: int, tile: np.ndarray, seen: np.ndarray, reach: float) -> np.ndarray:
-    """(g,) bool."""
+def _is_near(
+    elements: np.ndarray, curvature: int, tile: np.ndarray, seen: np.ndarray, reach: np.ndarray
+) -> np.ndarray:
+    """(g,) bool: whether an element carries one of the points `tile` to within its reach (s,) of a point `seen`."""
+    reach = reach[:, None]
     if curvature == 0:
         seen = seen - [0, 0, 1]  # with z = 0 the scalar product is that of the plane
     flat = seen * [1.0, 1.0, curvature]
-    found = []
+    found = np.zeros(len(elements), bool)
     for first in range(0, len(elements), CHUNK):
-        images = elements[first : first + CHUNK] @ tile.T  # (g, 3, p)
-        product = np.einsum("xk,gkp->gxp", flat, images)
+        images = (elements[first : first + CHUNK] @ tile.T).transpose(1, 0, 2)  # (3, g, p)
+        product = flat @ images.reshape(3, -1)  # (s, g * p)
         if curvature == 0:
-            square = (images[:, :2] ** 2).sum(1)[:, None] + (seen[:, :2] ** 2).sum(1)[:, None] - 2 * product
-            found.append(square.min((1, 2)) <= reach**2)
+            square = (images[:2] ** 2).sum(0).ravel() + (seen[:, :2] ** 2).sum(1)[:, None]
+            close = square - 2 * product <= reach**2
         elif curvature > 0:
-            found.append(product.max((1, 2)) >= np.cos(min(reach, np.pi)) - 1e-12)
+            close = product >= np.cos(np.minimum(reach, np.pi)) - 1e-12
         else:
-            found.append(-product.max((1, 2)) <= np.cosh(reach))
-    return np.concatenate(found) if found else np.zeros(0, bool)
+            close = product >= -np.cosh(reach)
+        found[first : first + CHUNK] = close.any(0).reshape(-1, len(tile)).any(1)
+    return found
 
 
 def _probes(tile: np.ndarray, curvature: int) -> np.ndarray:

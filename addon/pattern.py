@@ -22,6 +22,7 @@ from .faces import FaceLayout
 BLOCK, LEAST_BLOCK = 32, 4  # pixels; the orbit points that matter are looked up once for each block
 LEAST_CENTRES = 2
 RINGS = 20.0  # per square root of the tile's area
+WIDEST_RING = 0.15  # in the hyperbolic plane, where the number of tiles near by grows exponentially with it
 SOFTNESS = 1.5  # of the minimum, in rings
 TAIL = 9.0  # orbit points farther than the nearest by this many softnesses are left out: exp(-9) of a ring's phase
 BACKGROUND = (0.5, 0.5, 0.5)
@@ -41,17 +42,18 @@ def image(result: Result, layout: FaceLayout, size: int = 1024) -> np.ndarray:
     blocks = np.ones((size // BLOCK, size // BLOCK), bool)
     if layout.chart not in REPEATING:
         blocks = _covered_blocks(layout.uv, size // BLOCK)
-    waiting = [(y, x, BLOCK) for y, x in (np.argwhere(blocks) * BLOCK).tolist()]
+    waiting = [(y, x, BLOCK, orbits) for y, x in (np.argwhere(blocks) * BLOCK).tolist()]
     while waiting:
-        row, column, side = waiting.pop()
+        row, column, side, orbits = waiting.pop()
         y, x = np.mgrid[row : row + side, column : column + side]
         points = chart.to_point((np.stack([x.ravel(), y.ravel()], -1) + 0.5) / size)
         inside = np.isfinite(points).all(-1)
         if not inside.any():
             continue
+        orbits = [_that_count(points[inside], orbit, curvature, SOFTNESS * spacing) for orbit in orbits]
         if side > LEAST_BLOCK and not (inside.all() and _width(points, curvature) < 2 * SOFTNESS * spacing):
             half = side // 2  # few of the orbit count only where the points are near one another
-            waiting += [(row + i, column + j, half) for i in (0, half) for j in (0, half)]
+            waiting += [(row + i, column + j, half, orbits) for i in (0, half) for j in (0, half)]
             continue
         colours = np.tile(np.float32(BACKGROUND), (len(points), 1))
         colours[inside] = colour_at(points[inside], orbits, curvature, spacing)
@@ -94,21 +96,26 @@ def orbits_of(result: Result, layout: FaceLayout, chart: Chart, spacing: float) 
     """For each cone and corner (or other centre, where there are fewer than two) the images (., 3) that count
     anywhere in the layout or, where that repeats, in the unit square."""
     curvature = CURVATURE[result.geometry]
-    tile, gap = group.sample(result.embedding[result.cut_triangles].reshape(-1, 3), curvature)
-    seen, seen_gap = group.sample(_seen(layout, chart), curvature, 4 * group.SAMPLES)
-    centres = list(result.embedding[result.cones])
+    of_tile = group.Group(result.generators, curvature, result.embedding[result.cut_triangles].reshape(-1, 3))
+    seen, gap = group.sample(_seen(layout, chart), curvature, 4 * group.SAMPLES)
+    centres = [of_tile.representative(cone) for cone in result.embedding[result.cones]]
     tail = TAIL * SOFTNESS * spacing
-    reach = tail
+    reach = np.full(len(seen), tail)
     while True:
-        elements = group.near(result.generators, curvature, tile, seen, reach + gap + seen_gap)
+        elements = of_tile.near(seen, reach + gap)
         found = [_images(elements, centre) for centre in centres]
         while len(found) < LEAST_CENTRES:
-            centres.append(_new_centre(tile, found, curvature))
+            centres.append(of_tile.representative(_new_centre(of_tile.tile, found, curvature)))
             found.append(_images(elements, centres[-1]))
-        nearest = max(group.distances(seen, orbit, curvature).min(1).max() for orbit in found)
-        if reach >= nearest + tail or len(elements) >= group.CAP:
-            return found
-        reach = min(nearest + tail, reach + tail)
+        wanted = np.max([group.distances(seen, orbit, curvature).min(1) for orbit in found], axis=0) + tail
+        if (reach >= wanted).all() or len(elements) >= group.CAP:
+            return [_near_enough(orbit, seen, wanted + gap, curvature) for orbit in found]
+        reach = np.clip(wanted, reach, reach + tail)
+
+
+def _near_enough(orbit: np.ndarray, seen: np.ndarray, reach: np.ndarray, curvature: int) -> np.ndarray:
+    """Those of an orbit that are within reach of one of the points `seen` (s, 3), of each its own reach (s,)."""
+    return orbit[(group.distances(orbit, seen, curvature) <= reach).any(1)]
 
 
 def _seen(layout: FaceLayout, chart: Chart) -> np.ndarray:
@@ -140,13 +147,18 @@ def _new_centre(tile: np.ndarray, orbits: list[np.ndarray], curvature: int) -> n
 def _nearness(points: np.ndarray, orbit: np.ndarray, curvature: int, softness: float) -> np.ndarray:
     """(k,) log of the sum of exp(-distance / softness) over the orbit: minus the soft minimum of the distances, in
     units of softness. The points are near one another, so that few of the orbit count."""
-    middle = points[len(points) // 2][None]
-    from_middle = group.distances(orbit, middle, curvature)[:, 0]
-    reach = 2 * _width(points, curvature) + TAIL * softness
-    candidates = orbit[from_middle <= from_middle.min() + reach]
+    candidates = _that_count(points, orbit, curvature, softness)
     distances = group.distances(points, candidates, curvature) / softness
     least = distances.min(1)
     return np.log(np.exp(least[:, None] - distances).sum(1)) - least
+
+
+def _that_count(points: np.ndarray, orbit: np.ndarray, curvature: int, softness: float) -> np.ndarray:
+    """Those of an orbit that are nearly as near to one of the points as the nearest, or nearer."""
+    middle = points[len(points) // 2][None]
+    from_middle = group.distances(orbit, middle, curvature)[:, 0]
+    reach = 2 * _width(points, curvature) + TAIL * softness
+    return orbit[from_middle <= from_middle.min() + reach]
 
 
 def _width(points: np.ndarray, curvature: int) -> float:
@@ -164,4 +176,4 @@ def ring_spacing(result: Result) -> float:
         form = np.array([1.0, 1.0, curvature])
         aa, bb, ab = (((u - p) * (v - p) * form).sum(1) for u, v in ((q, q), (r, r), (q, r)))
         area = np.sqrt(np.maximum(aa * bb - ab**2, 0)).sum() / 2
-    return float(np.sqrt(area)) / RINGS
+    return min(float(np.sqrt(area)) / RINGS, WIDEST_RING if curvature < 0 else np.inf)

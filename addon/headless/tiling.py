@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .. import core, group
+from .. import core
 from ..charts import CURVATURE
+from ..group import Group
 
 LARGEST_FINITE = 400  # finite groups up to this order are drawn completely
 
@@ -35,8 +36,7 @@ def make_tiling(result: core.Result, limit: int) -> Tiling:
     cones = np.flatnonzero(np.isin(result.cut_to_vertex, result.cones))
     if curvature > 0 and result.signature:
         limit = max(limit, min(round(2 / core.parse_signature(result.signature).euler), LARGEST_FINITE))
-    tile, _ = group.sample(result.embedding[triangles].reshape(-1, 3), curvature)
-    elements = group.nearest(result.generators, curvature, tile, limit)
+    elements = Group(result.generators, curvature, result.embedding[triangles].reshape(-1, 3)).nearest(limit)
     outline = _single_edges(triangles)
     border = _single_edges(result.triangles)
     n = len(result.vertices)

@@ -91,8 +91,8 @@ def check_files(folder: Path, name: str, signature: str, cones: list[int]) -> di
     assert {path.name for path in folder.iterdir()} == {name + ending for ending in ENDINGS}
     report = json.loads((folder / f"{name}.json").read_text())
     keys = {
-        "mesh": "vertices triangles components euler boundary_loops genus",
-        "orbifold": "signature geometry euler cones",
+        "mesh": "vertices triangles components euler boundary_loops genus orientable",
+        "orbifold": "signature geometry euler cones moduli modulus",
         "solver": "iterations energy relative_gradient clamped_weights factor_nonzeros",
         "certificate": "flipped flipped_float32 seam_residual angle_residual area_residual bijective",
         "distortion": "quasi_conformal_mean quasi_conformal_median quasi_conformal_max log_area_std "

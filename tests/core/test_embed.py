@@ -11,8 +11,8 @@ import core
 
 SIGNATURES = ["442", "333", "632", "2222", "432", "532", "332", "22(5)", "33", "22", "237", "22222", "2" * 10]
 REPORT = {
-    "mesh": ["vertices", "triangles", "components", "euler", "boundary_loops", "genus"],
-    "orbifold": ["signature", "geometry", "euler", "cones"],
+    "mesh": ["vertices", "triangles", "components", "euler", "boundary_loops", "genus", "orientable"],
+    "orbifold": ["signature", "geometry", "euler", "cones", "moduli", "modulus"],
     "solver": ["iterations", "energy", "relative_gradient", "clamped_weights", "factor_nonzeros"],
     "certificate": ["flipped", "flipped_float32", "seam_residual", "angle_residual", "area_residual", "bijective"],
     "distortion": [
@@ -126,7 +126,7 @@ def test_report_is_complete_and_json(signature):
     n, m = len(result.vertices), len(result.triangles)
     assert report["mesh"] == {
         **{"vertices": n, "triangles": m, "components": 1},
-        **{"euler": 2, "boundary_loops": 0, "genus": 0},
+        **{"euler": 2, "boundary_loops": 0, "genus": 0, "orientable": True},
     }
     info = core.parse_signature(signature)
     assert report["orbifold"]["geometry"] == info.geometry

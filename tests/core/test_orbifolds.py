@@ -63,8 +63,7 @@ def test_signature_is_embedded_and_certified(signature, tmp_path):
 def test_generators_are_isometries_that_glue_the_seams(signature):
     """Each seam edge's one side is carried to the other by an element near the identity of the group, and no mirror
     leaves its reflection out."""
-    result = embedded(signature)
-    group = surfaces.bare("group")
+    result, group = embedded(signature), surfaces.bare("group")
     curvature = {"spherical": 1, "euclidean": 0, "hyperbolic": -1}[result.geometry]
     form = np.diag([1.0, 1.0, curvature])
     for matrix in result.generators:
@@ -83,11 +82,8 @@ def test_generators_are_isometries_that_glue_the_seams(signature):
         gaps = np.abs(one @ moves.transpose(0, 2, 1) - other).max((1, 2))
         assert gaps.min() < 1e-6 * max(1, np.abs(other).max()), (a, b, gaps.min())
     assert (np.linalg.det(result.generators) < 0).any() == ("*" in signature or "x" in signature)
-    points = result.embedding[np.unique(result.cut_triangles)]
-    tile, _ = group.sample(points, curvature)
-    if curvature > 0:
-        elements = group.nearest(result.generators, curvature, tile, 400)
-        assert len(elements) == round(2 / core.parse_signature(signature).euler)
+    elements = group.Group(result.generators, curvature, result.embedding[np.unique(result.cut_triangles)]).nearest(200)
+    assert len(elements) == (round(2 / core.parse_signature(signature).euler) if curvature > 0 else 200)
 
 
 @pytest.mark.parametrize("signature", ["*442", "2*5", "o", "22x", "*237", "3*22"])

@@ -120,11 +120,12 @@ def check_the_panel_says_geometry_and_what_is_wrong():
 
 
 def check_the_menu_offers_what_fits():
-    offers = part("core").suggest_signatures
-    state = part("panels.sidebar").signature_state
+    offers, state = part("panels.menus").fitting, part("panels.sidebar").signature_state
     for count in (2, 3, 4, 5, 9):
-        assert len(offers(count)) > 4
-        assert all(state(offer.signature, count).good for offer in offers(count))
+        obj = blob()
+        part("properties").set_cones(obj.data, list(range(0, 10 * count, 10)), [2] * count)
+        assert len(offers(obj.data)) > 4
+        assert all(state(offer.signature, count).good for offer in offers(obj.data))
 
 
 def check_jump_selects_the_vertex_alone():

@@ -153,7 +153,7 @@ def check_folds_and_the_date_line_are_seams():
         case, uv = (chart, signature, obj.name), blender_mesh.read_uv(obj.data)
         assert np.abs(charts.without_poles(chart, faces.layout_of(result, arrays, chart).uv)
                       - charts.without_poles(chart, corner_uv(obj, arrays))).max() < 1e-6, case
-        plain = faces._without_cut_faces(result, arrays, chart)
+        plain = faces.layout_of(result, arrays, "stereographic")
         assert len(seam_pairs(obj)) >= len(plain.seams), case
         further[chart] += len(seam_pairs(obj)) - len(plain.seams)
         sides = {}
@@ -329,8 +329,8 @@ def check_pattern_is_the_same_on_both_sides_of_every_seam():
         chart = charts.chart_of(result.chart, result.geometry, corners, result.uv)
         assert np.abs(chart.to_uv(corners) - result.uv).max() < 1e-9, signature
         assert np.abs(chart.to_point(result.uv.reshape(-1, 2)) - corners.reshape(-1, 3)).max() < 1e-8, signature
-        orbits = pattern.cone_orbits(result, chart, corners)
-        spacing = np.sqrt(pattern._tile_area(result, corners)) / pattern.RINGS
+        spacing = pattern.ring_spacing(result)
+        orbits = pattern.orbits_of(result, faces.plain_layout(result), chart, spacing)
         colours = {}
         for copy in np.flatnonzero(np.isin(result.cut_to_vertex, result.seams)):
             point = result.embedding[copy][None]
