@@ -2,7 +2,8 @@
 # Orbifold UV: the one command.  Nothing has to be done before it: what is missing is asked of apt.
 #
 #   ./build.sh run  [MESH] [--orbifold SIGNATURE] [--cones i,j,k | --cones auto] [--orders n,n,n]
-#                   [--weights conformal|cotan|mean-value|uniform] [--output DIR] [--blender PATH]
+#                   [--weights conformal|cotan|delaunay|mean-value|mean-value-exact|uniform]
+#                   [--holes refuse|fill|mirror] [--output DIR] [--blender PATH]
 #   ./build.sh test [--blender PATH]      everything; ends with `N passed, N failed`
 #   ./build.sh native                     build the library only, into addon/core/
 #   ./build.sh package                    build/orbifold_uv-VERSION.zip, to install in Blender

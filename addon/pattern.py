@@ -15,8 +15,8 @@ import colorsys
 import numpy as np
 
 from . import group
-from .charts import CURVATURE, Chart, chart_of
 from .core import Result
+from .core.charts import CURVATURE, Chart, chart_of
 from .faces import FaceLayout
 
 BLOCK, LEAST_BLOCK = 32, 4  # pixels; the orbit points that matter are looked up once for each block

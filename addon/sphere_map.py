@@ -22,6 +22,12 @@ def sphere_of(result: core.Result, arrays: MeshArrays) -> np.ndarray:
     OrbifoldError where there is a seam that the whole sphere does not close."""
     if not len(result.seams) and result.report["mesh"]["orientable"]:
         return _placed_patch(result.embedding[: result.n_input_vertices], arrays)
+    if {"*", "x"} & set(result.signature):
+        raise core.OrbifoldError(
+            "ORB_UNSUPPORTED_SIGNATURE",
+            f"a surface as that of {result.signature} does not cover the sphere once: spheres with cones do, and disks "
+            "with mirror corners and no cone inside become a patch of it",
+        )
     return placed_sphere(result.whole_sphere(), arrays)
 
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Build CHOLMOD and what it needs (AMD, COLAMD, CAMD, CCOLAMD, METIS) as position independent code, and tell
-# the Makefile how to use it.
+# Build CHOLMOD and what it needs (AMD, COLAMD, CAMD, CCOLAMD, METIS), and UMFPACK, as position independent code, and
+# tell the Makefile how to use them.
 #
 # usage: suitesparse.sh DIR
 #
-#   DIR/include             cholmod.h and its companions
+#   DIR/include             cholmod.h, umfpack.h and their companions
 #   DIR/lib/libsuitesparse.a, DIR/lib/blas_lock.o
 #   DIR/licenses            the texts that go along with the code
 #   DIR/flags.mk            SUITESPARSE_CFLAGS and SUITESPARSE_LIBS, relative to $(SUITESPARSE), which is DIR
@@ -122,7 +122,7 @@ unpack() {
 compilations() (
     cd "$work"
     local s=suitesparse m=metis modules module file variant variants="INT LONG" includes=""
-    for module in SuiteSparse_config {AMD,COLAMD,CAMD,CCOLAMD,CHOLMOD}/Include CHOLMOD; do includes+=" -I$s/$module"; done
+    for module in SuiteSparse_config {AMD,COLAMD,CAMD,CCOLAMD,CHOLMOD,UMFPACK}/Include CHOLMOD; do includes+=" -I$s/$module"; done
     if [ -d $s/CHOLMOD/SuiteSparse_metis ]; then   # SuiteSparse 6 and later have a METIS of their own,
         variants="INT"                             # and two files where there was one, compiled for each integer
         for module in include libmetis GKlib; do includes+=" -I$s/CHOLMOD/SuiteSparse_metis/$module"; done
@@ -144,7 +144,30 @@ compilations() (
             done
         done
     done
+    umfpack_compilations
 )
+
+# UMFPACK for real matrices and indices of 32 bits, as its own makefile compiles it; without what prints, saves and
+# loads. Since SuiteSparse 7 the variants are files of their own, in Source2. (Uses the locals of compilations.)
+umfpack_compilations() {
+    local u=$s/UMFPACK file flags="-DDINT -DNCHOLMOD -I$s/UMFPACK/Source $includes" files=($s/UMFPACK/Source/*.c)
+    [ -d $u/Source2 ] && files=($u/Source2/{umf_i_,umf_di_,umfpack_di_,umfpack_gn_}*.c)
+    for file in "${files[@]}"; do
+        case $file in *report* | *_save_* | *_load_* | */umf_triplet.c | *multicompile*) continue ;; esac
+        [ -e "$file" ] || continue
+        echo "objects/$(basename "$file" .c).o $file $flags"
+    done
+    [ -d $u/Source2 ] && return
+    echo "objects/umf_lhsolve.o $u/Source/umf_ltsolve.c -DCONJUGATE_SOLVE $flags"
+    echo "objects/umf_uhsolve.o $u/Source/umf_utsolve.c -DCONJUGATE_SOLVE $flags"
+    echo "objects/umf_assemble_fixq.o $u/Source/umf_assemble.c -DFIXQ $flags"
+    echo "objects/umf_store_lu_drop.o $u/Source/umf_store_lu.c -DDROP $flags"
+    echo "objects/umfpack_wsolve.o $u/Source/umfpack_solve.c -DWSOLVE $flags"
+    echo "objects/umf_triplet_map_x.o $u/Source/umf_triplet.c -DDO_MAP -DDO_VALUES $flags"
+    echo "objects/umf_triplet_map_nox.o $u/Source/umf_triplet.c -DDO_MAP $flags"
+    echo "objects/umf_triplet_nomap_x.o $u/Source/umf_triplet.c -DDO_VALUES $flags"
+    echo "objects/umf_triplet_nomap_nox.o $u/Source/umf_triplet.c $flags"
+}
 
 compile() {
     mkdir -p "$work/objects" "$out/include" "$out/lib" "$out/licenses"
@@ -153,7 +176,7 @@ compile() {
     rm -f "$out/lib/libsuitesparse.a"
     ar rcs "$out/lib/libsuitesparse.a" "$work"/objects/*.o
     $cc -O2 -fPIC -fvisibility=hidden -pthread -c "$here/blas_lock.c" -o "$out/lib/blas_lock.o"
-    cp "$work"/suitesparse/SuiteSparse_config/SuiteSparse_config.h "$work"/suitesparse/CHOLMOD/Include/cholmod*.h "$out/include/"
+    cp "$work"/suitesparse/SuiteSparse_config/SuiteSparse_config.h "$work"/suitesparse/{AMD/Include/amd,CHOLMOD/Include/cholmod,UMFPACK/Include/umfpack}*.h "$out/include/"
     cp "$work/suitesparse/LICENSE.txt" "$out/licenses/SuiteSparse.txt"
     cp "$work/metis/LICENSE.txt" "$out/licenses/METIS.txt"
     cp /usr/share/doc/libopenblas-serial-dev/copyright "$out/licenses/OpenBLAS.txt" 2>/dev/null || true
@@ -183,9 +206,9 @@ build_own() {
 use_installed() {
     local include
     for include in /usr/include/suitesparse /usr/local/include/suitesparse /usr/include /usr/local/include; do
-        [ -e "$include/cholmod.h" ] || continue
+        [ -e "$include/cholmod.h" ] && [ -e "$include/umfpack.h" ] || continue
         printf '%s\n' '$(info suitesparse: using the installed SuiteSparse, linked dynamically)' \
-            "SUITESPARSE_CFLAGS = -isystem $include" 'SUITESPARSE_LIBS = -lcholmod' >"$out/flags.mk"
+            "SUITESPARSE_CFLAGS = -isystem $include" 'SUITESPARSE_LIBS = -lumfpack -lcholmod' >"$out/flags.mk"
         return
     done
     die "no SuiteSparse: its sources could not be fetched, and none is installed (libsuitesparse-dev)"

@@ -23,6 +23,7 @@ from .signatures import (
     tile_outline,
 )
 from .topology import Topology, topology_of
+from .whole import WholeLayout, edge_keys, whole_layout
 
 __all__ = [
     "CHARTS",
@@ -34,7 +35,9 @@ __all__ = [
     "Result",
     "Signature",
     "Topology",
+    "WholeLayout",
     "describe",
+    "edge_keys",
     "embed",
     "fitting_signatures",
     "format_signature",
@@ -46,4 +49,5 @@ __all__ = [
     "surface_name",
     "tile_outline",
     "topology_of",
+    "whole_layout",
 ]

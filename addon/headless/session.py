@@ -105,7 +105,8 @@ def _dress(obj: bpy.types.Object, arrays: blender_mesh.MeshArrays, result: core.
     material = materials.make_material(obj, result, layout)
     mesh.materials.clear()
     materials.assign(obj, material)
-    mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), bool))
+    smooth = result.report["mesh"]["orientable"]  # elsewhere normals of faces that lie on their backs would mix
+    mesh.polygons.foreach_set("use_smooth", np.full(len(mesh.polygons), smooth))
     mesh.update()
     return material
 

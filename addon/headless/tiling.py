@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import core
-from ..charts import CURVATURE
+from ..core.charts import CURVATURE
 from ..group import Group
 
 LARGEST_FINITE = 400  # finite groups up to this order are drawn completely

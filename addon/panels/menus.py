@@ -8,7 +8,6 @@ import bpy
 from .. import arrangement, core, previews, properties, surface
 from ..operators.unwrap import UV_OT_orbifold_unwrap
 
-ICON_SCALE = 1.6
 GEOMETRIES = (("euclidean", "Euclidean"), ("spherical", "Spherical"), ("hyperbolic", "Hyperbolic"))
 
 
@@ -60,11 +59,8 @@ class MESH_MT_orbifold_signatures(bpy.types.Menu):
                 column.label(text=title)
                 column.separator()
                 for offer in of_it:
-                    line = column.row(align=True)
-                    icon = previews.tile(offer.signature)
-                    if icon:
-                        line.template_icon(icon_value=icon, scale=ICON_SCALE)
-                    entry = line.operator("mesh.orbifold_set_signature", text=core.describe(offer.signature))
+                    text, icon = core.describe(offer.signature), previews.tile(offer.signature)
+                    entry = column.operator("mesh.orbifold_set_signature", text=text, icon_value=icon)
                     entry.signature = offer.signature
 
 

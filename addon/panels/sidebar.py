@@ -50,8 +50,9 @@ def _tasks(missing: int, what: str, where: str, others: int) -> list[str]:
     return [f"add {missing}{kind}" if missing > 0 else f"remove {-missing}{kind}"]
 
 
-def surface_problem(signature: str, seen: core.Topology) -> Optional[str]:
-    """Why this surface is not that of a signature that parses; None where it is, or may be after filling holes."""
+def surface_problem(signature: str, seen: core.Topology, holes: str) -> Optional[str]:
+    """Why this surface is not that of a signature that parses; None where it is, or will be with this choice for
+    holes."""
     read = core.parse_signature(signature)
     crosscaps = read.n_crosscaps + 2 * read.n_handles if read.n_crosscaps else 0
     wanted = (crosscaps, False) if crosscaps else (read.n_handles, True)
@@ -61,6 +62,8 @@ def surface_problem(signature: str, seen: core.Topology) -> Optional[str]:
         genus = max(seen.genus, 0)
         name = core.surface_name(*((genus, 0) if seen.orientable else (0, genus)), len(seen.loops))
         return f"The signature is not of this mesh, which is a {name}: choose one from the menu"
+    if len(seen.loops) > read.n_mirrors and holes == "refuse":
+        return "Choose what to do with the borders that the signature has no mirror for"
     return None
 
 
@@ -70,8 +73,7 @@ class MESH_UL_orbifold_cones(bpy.types.UIList):
     def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_property, index=0) -> None:
         row = layout.row(align=True)
         split = row.split(factor=0.6)
-        kind = " corner" if item.mirror else ""
-        split.label(text=f"{index + 1}.  {item.vertex}{kind}", icon="MOD_MIRROR" if item.mirror else "VERTEXSEL")
+        split.label(text=f"{index + 1}.  {item.vertex}", icon="MOD_MIRROR" if item.mirror else "VERTEXSEL")
         split.prop(item, "order", text="")
         jump = row.operator("mesh.orbifold_jump_to_cone", text="", icon="RESTRICT_SELECT_OFF", emboss=False)
         jump.index = index
@@ -104,7 +106,7 @@ class OrbifoldPanel:
 def draw_cones(layout: bpy.types.UILayout, settings) -> None:
     layout.operator("mesh.orbifold_add_cones", icon="ADD")
     titles = layout.split(factor=0.5)
-    titles.label(text="Cone or Corner, Vertex")
+    titles.label(text="Cone, Vertex")
     titles.label(text="Order")
     row = layout.row()
     row.template_list(MESH_UL_orbifold_cones.bl_idname, "", settings, "cones", settings, "active_cone", rows=4)
@@ -123,7 +125,7 @@ def draw_signature(layout: bpy.types.UILayout, mesh: bpy.types.Mesh, width: floa
     n_corners = sum(item.mirror for item in settings.cones)
     state = signature_state(signature, len(settings.cones) - n_corners, n_corners)
     if state.good:
-        problem = surface_problem(signature, seen)
+        problem = surface_problem(signature, seen, settings.holes)
         state = state if problem is None else SignatureState(problem, False)
     layout.label(text="Signature")
     row = layout.row(align=True)
@@ -133,7 +135,8 @@ def draw_signature(layout: bpy.types.UILayout, mesh: bpy.types.Mesh, width: floa
     read = properties.read_signature(signature)
     extra = len(seen.loops) - (read.n_mirrors if read is not None else 0)
     if extra > 0:
-        layout.prop(settings, "holes", text=f"{extra} Hole{'s' if extra > 1 else ''}")
+        layout.label(text=f"{extra} border{'s' if extra > 1 else ''} without a mirror:")
+        layout.prop(settings, "holes", text="")
     column = layout.column(align=True)
     icon = "CHECKMARK" if state.good else "INFO"
     scale = bpy.context.preferences.system.ui_scale

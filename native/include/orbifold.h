@@ -122,7 +122,7 @@ typedef struct orb_request {
     void *user;                 /* its last argument */
 } orb_request;
 
-ORB_API orb_request orb_request_default(void); /* cotangent weights clamped at 0.01; all else zero */
+ORB_API orb_request orb_request_default(void); /* conformal weights, none below 0.01; all else zero */
 enum { ORB_MAX_SIGNATURE = 4096 };             /* characters */
 typedef struct orb_signature_info {
     int32_t curvature;    /* +1 spherical, 0 Euclidean, -1 hyperbolic */
@@ -167,7 +167,8 @@ typedef struct orb_view {
     const double *embedding_low;   /* [n_copies*3] what double precision cut off: the point is the sum of the two */
     const int32_t *cones, *orders; /* [n_cones] */
     const bool *mirrors;           /* [n_cones] whether it is a mirror corner */
-    const double *weights;         /* [n_edges*3] rows i, j, w_ij as used; NULL where they live on other edges */
+    const double *weights;         /* [n_edges*3] rows i, j, w_ij as used; NULL where they live on other edges or are
+                                      not symmetric */
     int32_t n_generators;          /* isometries that generate the group: 3 x 3 matrices, by rows */
     const double *generators;      /* [n_generators*9] on the model's coordinates; the mirrors' reflections too */
     const int32_t *seams;          /* [n_seams*2] edges of the mesh across which the layout is not continuous */

@@ -1,5 +1,6 @@
 /* The whole way from mesh arrays to a certified embedding. SPDX-License-Identifier: GPL-3.0-or-later */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,31 +8,16 @@
 #include "cut.h"
 #include "distortion.h"
 #include "embedding.h"
-#include "initial.h"
-#include "modulus.h"
-#include "monitor.h"
-#include "newton.h"
 #include "polygon.h"
+#include "solve.h"
 #include "weights.h"
-
-/* What is needed on the way and not afterwards. */
-typedef struct workshop {
-    const orb_request *request;
-    const uint8_t *halve; /* chords to halve, or NULL: all */
-    orb_embedding *embedding;
-    orb_disk *disk;
-    orb_problem *problem;
-    orb_system *system;
-    int32_t *order; /* [system->n_free] of the system's blocks */
-    orb_monitor monitor;
-} workshop;
 
 const char *orb_version(void) { return "0.1.0"; }
 
-orb_request orb_request_default(void) { return (orb_request){.weights = ORB_WEIGHTS_COTANGENT, .clamp = 0.01}; }
+orb_request orb_request_default(void) { return (orb_request){.weights = ORB_WEIGHTS_CONFORMAL, .clamp = 0.01}; }
 
 /* Mesh, signature and picks: everything that can be wrong before any work is done. */
-static orb_status read_input(workshop *work, const orb_mesh_arrays *arrays, orb_error *error) {
+static orb_status read_input(orb_workshop *work, const orb_mesh_arrays *arrays, orb_error *error) {
     orb_embedding *embedding = work->embedding;
     orb_status status = surface_create(arrays, work->request, work->halve, &embedding->surface, error);
     if (status != ORB_OK)
@@ -60,7 +46,7 @@ static double cut_length(const orb_disk *disk) {
 /* A sphere with cones is cut along the path in which they were picked, every other surface along a graph. A tile of the
  * hyperbolic plane may be any polygon with the right angles: there, a path through many cones, or one that is blocked or
  * erratic, much longer than a graph, gives way to that (docs/decisions.md). */
-static orb_status cut(workshop *work, orb_error *error) {
+static orb_status cut(orb_workshop *work, orb_error *error) {
     static const double erratic = 1.5;
     enum { MOST_ON_PATH = 12 };
     const orb_surface *surface = work->embedding->surface;
@@ -84,7 +70,7 @@ static orb_status cut(workshop *work, orb_error *error) {
 }
 
 /* Two cones or corners of a lune are antipodal: an edge between them would be no one geodesic. */
-static orb_status refuse_edge_between_poles(const workshop *work, orb_error *error) {
+static orb_status refuse_edge_between_poles(const orb_workshop *work, orb_error *error) {
     const orb_embedding *embedding = work->embedding;
     const orb_mesh *mesh = embedding->mesh;
     const orb_surface *surface = embedding->surface;
@@ -104,7 +90,7 @@ static orb_status refuse_edge_between_poles(const workshop *work, orb_error *err
     return ORB_OK;
 }
 
-static orb_status cut_and_glue(workshop *work, orb_error *error) {
+static orb_status cut_and_glue(orb_workshop *work, orb_error *error) {
     orb_embedding *embedding = work->embedding;
     orb_report *report = &embedding->report;
     const orb_signature *signature = embedding->surface->signature;
@@ -124,126 +110,14 @@ static orb_status cut_and_glue(workshop *work, orb_error *error) {
         status = problem_create(embedding->mesh, embedding->copies, work->disk, embedding->tile, embedding->weights,
                                 &work->problem, error);
     if (status == ORB_OK)
+        status = solve_find_weights(work, error);
+    if (status == ORB_OK)
         report->orbifold_euler = signature ? signature->euler : 0;
     report->seconds_tile = monitor_clock() - start;
     return status;
 }
 
-/* The matrix's pattern and its ordering, which the initial guess shares. */
-static orb_status set_up_system(workshop *work, orb_error *error) {
-    double start = monitor_clock();
-    orb_status status = system_create(work->problem, problem_is_complex(work->problem), &work->system, error);
-    if (status != ORB_OK)
-        return status;
-    double built = monitor_clock();
-    work->order = malloc(((size_t)work->system->n_free + 1) * sizeof *work->order);
-    if (!work->order)
-        return error_memory(error);
-    status = cholesky_order(&work->system->blocks, ORDERING_AMD, work->order, error);
-    work->embedding->report.seconds_assemble = built - start;
-    work->embedding->report.seconds_analyze = monitor_clock() - built;
-    return status;
-}
-
-/* Weights for the disk's own mesh: the same, unless it was refined. */
-static orb_status start_on_disk(workshop *work, const int32_t *vertex_order, orb_point *start, orb_error *error) {
-    const orb_disk *disk = work->disk;
-    if (!disk->refined)
-        return initial_embed(disk, work->embedding->tile, work->embedding->weights, vertex_order, work->system->n_free,
-                             start, error);
-    double *weights = malloc(((size_t)disk->mesh->n_edges + 1) * sizeof *weights);
-    if (!weights)
-        return error_memory(error);
-    for (int32_t e = 0; e < disk->mesh->n_edges; e++)
-        weights[e] = 1;
-    orb_status status = initial_embed(disk, work->embedding->tile, weights, NULL, 0, start, error);
-    free(weights);
-    return status;
-}
-
-static orb_status find_start(workshop *work, orb_error *error) {
-    orb_embedding *embedding = work->embedding;
-    const orb_system *system = work->system;
-    double began = monitor_clock();
-    orb_status status = error_memory(error);
-    size_t n = (size_t)embedding->mesh->n_vertices;
-    orb_point *start = malloc(((size_t)work->disk->mesh->n_vertices + 1) * sizeof *start);
-    int32_t *vertex_order = malloc(((size_t)system->n_free + 1) * sizeof *vertex_order);
-    embedding->position = malloc((n + 1) * sizeof *embedding->position);
-    if (!start || !vertex_order || !embedding->position)
-        goto done;
-    for (int32_t k = 0; k < system->n_free; k++)
-        vertex_order[k] = system->free_vertex[work->order[k]];
-    if (geometry_any_start(embedding->tile->geometry)) {
-        status = initial_boundary(work->disk, embedding->tile, start, error);
-    } else {
-        status = start_on_disk(work, vertex_order, start, error);
-    }
-    if (status == ORB_OK) {
-        memcpy(embedding->position, start, n * sizeof *start);
-        problem_aim(work->problem, embedding->position);
-    }
-done:
-    free(start);
-    free(vertex_order);
-    embedding->report.seconds_initial = monitor_clock() - began;
-    return status;
-}
-
-/* The fast way, and where it stagnates, the exact Hessian from the same start. */
-static orb_status find_minimum(workshop *work, orb_minimum *minimum, orb_error *error) {
-    orb_point *position = work->embedding->position;
-    orb_status status =
-        newton_minimise(work->problem, work->system, work->order, position, minimum, &work->monitor, error);
-    if (status != ORB_NOT_CONVERGED || !work->system->is_complex)
-        return status;
-    system_free(work->system);
-    work->system = NULL;
-    status = system_create(work->problem, false, &work->system, error);
-    if (status == ORB_OK)
-        status = newton_minimise(work->problem, work->system, work->order, position, minimum, &work->monitor, error);
-    return status;
-}
-
-/* The minimiser, the affine modulus, and the energy of what came out. */
-static orb_status minimise(workshop *work, orb_error *error) {
-    orb_embedding *embedding = work->embedding;
-    orb_report *report = &embedding->report;
-    orb_minimum minimum;
-    orb_status status = find_minimum(work, &minimum, error);
-    if (status != ORB_OK)
-        return status;
-    double complex *turn = malloc(((size_t)embedding->copies->n_copies + 1) * sizeof *turn);
-    embedding->placed = malloc(((size_t)embedding->copies->n_copies + 1) * sizeof *embedding->placed);
-    if (!turn || !embedding->placed) {
-        free(turn);
-        return error_memory(error);
-    }
-    problem_place(work->problem, embedding->position, embedding->placed, turn);
-    double covariance[3] = {1, 0, 1};
-    if (!geometry_has_translations(embedding->tile->geometry))
-        ;                                                 /* rigid */
-    else if (work->request->weights == ORB_WEIGHTS_GIVEN) /* they say what the metric is */
-        problem_covariance(work->problem, embedding->placed, covariance);
-    else
-        distortion_covariance(embedding, covariance);
-    modulus_choose(embedding, covariance);
-    modulus_report(embedding);
-    if (report->n_moduli > 0)
-        problem_place(work->problem, embedding->position, embedding->placed, turn);
-    free(turn);
-    report->energy = problem_energy(work->problem, embedding->placed, NULL, NULL, NULL, NULL, NULL);
-    report->iterations = minimum.iterations;
-    report->relative_gradient = minimum.relative_gradient;
-    report->factor_nonzeros = minimum.factor_nonzeros;
-    report->seconds_assemble += minimum.seconds_assemble;
-    report->seconds_analyze += minimum.seconds_analyze;
-    report->seconds_factor = minimum.seconds_factor;
-    report->seconds_solve = minimum.seconds_solve;
-    return ORB_OK;
-}
-
-static orb_status certify(workshop *work, orb_error *error) {
+static orb_status certify(orb_workshop *work, orb_error *error) {
     double start = monitor_clock();
     orb_embedding *embedding = work->embedding;
     orb_status status = certificate_check(embedding, error);
@@ -255,7 +129,7 @@ static orb_status certify(workshop *work, orb_error *error) {
     return status;
 }
 
-static orb_status run_stages(workshop *work, const orb_mesh_arrays *arrays, orb_error *error) {
+static orb_status run_stages(orb_workshop *work, const orb_mesh_arrays *arrays, orb_error *error) {
     double start = monitor_clock();
     orb_status status = monitor_report(&work->monitor, "topology", 0, error);
     if (status == ORB_OK)
@@ -268,15 +142,15 @@ static orb_status run_stages(workshop *work, const orb_mesh_arrays *arrays, orb_
     if (status == ORB_OK)
         status = monitor_report(&work->monitor, "order", 0.1, error);
     if (status == ORB_OK)
-        status = set_up_system(work, error);
+        status = solve_set_up(work, error);
     if (status == ORB_OK)
         status = monitor_report(&work->monitor, "start", 0.2, error);
     if (status == ORB_OK)
-        status = find_start(work, error);
+        status = solve_start(work, error);
     if (status == ORB_OK)
         status = monitor_report(&work->monitor, "minimise", 0.3, error);
     if (status == ORB_OK)
-        status = minimise(work, error);
+        status = solve_minimise(work, error);
     if (status == ORB_OK)
         status = monitor_report(&work->monitor, "certify", 0.9, error);
     if (status == ORB_OK)
@@ -290,12 +164,13 @@ static orb_status run_stages(workshop *work, const orb_mesh_arrays *arrays, orb_
 /* One embedding, with the chords halved that `halve` allows (NULL: all). */
 static orb_status embed_once(const orb_mesh_arrays *mesh, const orb_request *request, const uint8_t *halve,
                              orb_embedding **result, orb_error *error) {
-    workshop work = {.request = request, .halve = halve, .monitor = {request->progress, request->user, 0}};
+    orb_workshop work = {.request = request, .halve = halve, .monitor = {request->progress, request->user, 0}};
     work.embedding = calloc(1, sizeof *work.embedding);
     orb_status status = work.embedding ? run_stages(&work, mesh, error) : error_memory(error);
     free(work.order);
     system_free(work.system);
     problem_free(work.problem);
+    intrinsic_free(work.intrinsic);
     disk_free(work.disk);
     *result = work.embedding;
     if (status != ORB_OK) {
@@ -356,6 +231,36 @@ static orb_status drop_needless(const orb_mesh_arrays *mesh, const orb_request *
     return status == ORB_CANCELLED || status == ORB_OUT_OF_MEMORY ? status : ORB_OK;
 }
 
+static bool weights_may_be_to_blame(orb_status status) {
+    return status == ORB_CERTIFICATE_FAILED || status == ORB_NOT_CONVERGED || status == ORB_ZERO_AREA_TRIANGLE;
+}
+
+/* Adds to the message which other weights do embed the mesh, for they are tried. */
+static void advise(const orb_mesh_arrays *mesh, const orb_request *request, orb_error *error) {
+    static const struct {
+        orb_weights kind;
+        const char *name;
+    } others[] = {
+        {ORB_WEIGHTS_COTANGENT, "cotangent"}, {ORB_WEIGHTS_MEAN_VALUE, "mean-value"}, {ORB_WEIGHTS_UNIFORM, "uniform"}};
+    const char *passes = NULL;
+    for (size_t k = 0; k < sizeof others / sizeof *others && !passes && error; k++) {
+        orb_request other = *request;
+        orb_embedding *embedding = NULL;
+        other.weights = others[k].kind;
+        other.progress = NULL;
+        if (other.weights != request->weights && embed_once(mesh, &other, NULL, &embedding, NULL) == ORB_OK)
+            passes = others[k].name;
+        orb_embedding_free(embedding);
+    }
+    if (!error)
+        return;
+    size_t used = strlen(error->message), room = sizeof error->message - used;
+    if (passes)
+        snprintf(error->message + used, room, "; %s weights embed it", passes);
+    else
+        snprintf(error->message + used, room, "; nor do other weights embed it");
+}
+
 orb_status orb_embed(const orb_mesh_arrays *mesh, const orb_request *request, orb_embedding **result,
                      orb_error *error) {
     if (!result)
@@ -370,5 +275,7 @@ orb_status orb_embed(const orb_mesh_arrays *mesh, const orb_request *request, or
         return error_set(error, ORB_OK, "%s", "");
     orb_embedding_free(*result);
     *result = NULL;
+    if (weights_may_be_to_blame(status))
+        advise(mesh, request, error);
     return status;
 }

@@ -43,15 +43,28 @@ static void triangle_corners(const orb_embedding *embedding, int32_t t, orb_poin
         corners[c] = embedding->placed[embedding->copies->triangles[3 * (size_t)t + (size_t)c]];
 }
 
+static bool is_flipped(const orb_embedding *embedding, int32_t t) {
+    orb_point corners[3];
+    int sign;
+    triangle_corners(embedding, t, corners);
+    certificate_corner(embedding->tile->geometry, corners, &sign);
+    return sign <= 0;
+}
+
+int64_t certificate_find_flipped(const orb_embedding *embedding, bool *flipped) {
+    int64_t count = 0;
+    for (int32_t t = 0; t < embedding->mesh->n_triangles; t++) {
+        flipped[t] = is_flipped(embedding, t);
+        count += flipped[t];
+    }
+    return count;
+}
+
 static orb_status check_orientation(orb_embedding *embedding, orb_error *error) {
     int32_t named[ORB_MAX_ELEMENTS], n_named = 0;
     int64_t flipped = 0, without_area = 0;
     for (int32_t t = 0; t < embedding->mesh->n_triangles; t++) {
-        orb_point corners[3];
-        triangle_corners(embedding, t, corners);
-        int sign;
-        certificate_corner(embedding->tile->geometry, corners, &sign);
-        if (sign > 0)
+        if (!is_flipped(embedding, t))
             continue;
         if (n_named < ORB_MAX_ELEMENTS)
             named[n_named++] = t;
@@ -64,12 +77,12 @@ static orb_status check_orientation(orb_embedding *embedding, orb_error *error) 
     if (flipped == without_area)
         return error_set_elements(error, ORB_ZERO_AREA_TRIANGLE, ORB_TRIANGLE, named, n_named, flipped,
                                   "%lld %s without area %s flat on the tile, first triangle %d: dissolve degenerate "
-                                  "faces, or take uniform weights",
+                                  "faces",
                                   (long long)flipped, flipped == 1 ? "triangle" : "triangles",
                                   flipped == 1 ? "stays" : "stay", (int)named[0]);
     return error_set_elements(error, ORB_CERTIFICATE_FAILED, ORB_TRIANGLE, named, n_named, flipped,
                               "%lld %s flipped on the tile, first triangle %d: pick a cone near it, put many cones in "
-                              "the sequence of a short walk, raise the clamp, or take uniform weights if these are not",
+                              "the sequence of a short walk, or raise the clamp",
                               (long long)flipped, flipped == 1 ? "triangle is" : "triangles are", (int)named[0]);
 }
 

@@ -12,6 +12,9 @@
  * no area on the mesh. */
 orb_status certificate_check(orb_embedding *embedding, orb_error *error);
 
+/* Which triangles are not positively oriented, flipped[mesh->n_triangles]; returns how many. */
+int64_t certificate_find_flipped(const orb_embedding *embedding, bool *flipped);
+
 /* The corner of a geodesic triangle whose edges are most nearly orthogonal, and the sign of the orientation there,
  * where it has the least rounding error. */
 int certificate_corner(const orb_geometry *geometry, const orb_point corners[3], int *sign);

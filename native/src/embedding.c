@@ -90,14 +90,15 @@ orb_status embedding_finish(orb_embedding *embedding, orb_error *error) {
     size_t n = (size_t)copies->n_copies, edges = (size_t)mesh->n_edges;
     embedding->coordinates = malloc((3 * n + 1) * sizeof *embedding->coordinates);
     embedding->coordinates_low = malloc((3 * n + 1) * sizeof *embedding->coordinates_low);
-    embedding->edge_weights = malloc((3 * edges + 1) * sizeof *embedding->edge_weights);
+    embedding->edge_weights = embedding->weights ? malloc((3 * edges + 1) * sizeof *embedding->edge_weights) : NULL;
     embedding->seams = malloc((2 * edges + 1) * sizeof *embedding->seams);
-    if (!embedding->coordinates || !embedding->coordinates_low || !embedding->edge_weights || !embedding->seams)
+    if (!embedding->coordinates || !embedding->coordinates_low || !embedding->seams ||
+        (embedding->weights && !embedding->edge_weights))
         return error_memory(error);
     for (size_t u = 0; u < n; u++)
         geometry_coordinates(embedding->tile->geometry, embedding->placed[u], embedding->coordinates + 3 * u,
                              embedding->coordinates_low + 3 * u);
-    for (size_t e = 0; e < edges; e++) {
+    for (size_t e = 0; e < edges && embedding->weights; e++) {
         embedding->edge_weights[3 * e] = halfedge_from(mesh, mesh->edge_halfedge[e]);
         embedding->edge_weights[3 * e + 1] = halfedge_to(mesh, mesh->edge_halfedge[e]);
         embedding->edge_weights[3 * e + 2] = embedding->weights[e];

@@ -13,8 +13,8 @@ struct orb_embedding {
     orb_copies *copies;
     orb_point *position;                   /* [mesh->n_vertices] isolated vertices: the origin */
     orb_point *placed;                     /* [copies->n_copies] position of each copy */
-    double *weights;                       /* [mesh->n_edges] */
-    double *edge_weights;                  /* [mesh->n_edges*3] rows i, j, w_ij for the view */
+    double *weights;                       /* [mesh->n_edges]; NULL in the end if they live on other edges */
+    double *edge_weights;                  /* [mesh->n_edges*3] rows i, j, w_ij for the view; or NULL */
     double *coordinates, *coordinates_low; /* [copies->n_copies*3] for the view */
     int32_t n_seams;
     int32_t *seams;         /* [n_seams*2] */

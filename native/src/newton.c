@@ -279,7 +279,7 @@ static orb_status error_not_converged(const minimiser *work, orb_error *error) {
     }
     return error_set_elements(error, ORB_NOT_CONVERGED, ORB_VERTEX, &worst, 1, 1,
                               "not converged: after %d steps the pull of the edges at vertex %d is out of balance by "
-                              "%.1e of itself: pick a cone near it, or take other weights",
+                              "%.1e of itself: pick a cone near it",
                               (int)(work->minimum->iterations + work->minimum->refinements), (int)worst,
                               work->relative);
 }

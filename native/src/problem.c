@@ -6,6 +6,11 @@
 
 static const double same_direction = 1e-9;
 
+static void find_reflections(orb_problem *problem) {
+    for (int32_t u = 0; u < problem->copies->n_copies; u++)
+        problem->reflects = problem->reflects || problem->copies->isometries[problem->copies->isometry[u]].reflects;
+}
+
 /* Edges, in copies of one of their triangles; the other triangle's are as good. */
 static void list_edges(orb_problem *problem, const orb_mesh *mesh) {
     for (int32_t e = 0; e < mesh->n_edges; e++) {
@@ -13,8 +18,7 @@ static void list_edges(orb_problem *problem, const orb_mesh *mesh) {
         problem->edges[2 * e] = problem->copies->triangles[h];
         problem->edges[2 * e + 1] = problem->copies->triangles[halfedge_next(h)];
     }
-    for (int32_t u = 0; u < problem->copies->n_copies; u++)
-        problem->reflects = problem->reflects || problem->copies->isometries[problem->copies->isometry[u]].reflects;
+    find_reflections(problem);
 }
 
 static void slide(orb_problem *problem, int32_t vertex, int32_t line) {
@@ -181,6 +185,13 @@ void problem_free(orb_problem *problem) {
     free(problem->line);
     free(problem->lines);
     free(problem);
+}
+
+void problem_use_edges(orb_problem *problem, const orb_copies *copies, const int32_t *edges, const double *weights) {
+    memcpy(problem->edges, edges, (size_t)problem->n_edges * 2 * sizeof *edges);
+    problem->copies = copies;
+    problem->weights = weights;
+    find_reflections(problem);
 }
 
 bool problem_is_complex(const orb_problem *problem) {

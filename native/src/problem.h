@@ -32,6 +32,9 @@ orb_status problem_create(const orb_mesh *mesh, const orb_copies *copies, const 
                           const double *weights, orb_problem **problem, orb_error *error);
 void problem_free(orb_problem *problem);
 
+/* Other edges, as many, between these copies (borrowed, as the weights are), whose first ones are those of before. */
+void problem_use_edges(orb_problem *problem, const orb_copies *copies, const int32_t *edges, const double *weights);
+
 /* Whether the Hessian's complex-linear part can stand for it: nothing is reflected and nothing slides, but perhaps the
  * vertex that holds a rotation. */
 bool problem_is_complex(const orb_problem *problem);

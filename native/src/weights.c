@@ -19,10 +19,9 @@ static bool triangle_cotangents(const triangle_shape *shape, double cot[3]) {
     return true;
 }
 
-/* part[c]: what the triangle adds to the mean-value weights of half-edge c, both directions added up:
- * (tan(half of the angle at one end) + tan(half of that at the other)) / length. Infinite or NaN where an angle is pi
- * or a length is zero. */
-static void triangle_mean_values(const triangle_shape *shape, double part[3]) {
+/* part[c][k]: what the triangle adds to the mean-value weight of half-edge c at its start (k = 0) and its end (k = 1),
+ * tan(half of the angle there) / length. Infinite or NaN where an angle is pi or a length is zero. */
+static void triangle_mean_values(const triangle_shape *shape, double part[3][2]) {
     double tangent[3]; /* of half the angle at corner c */
     for (int c = 0; c < 3; c++) {
         const double lengths = shape->length[c] * shape->length[(c + 2) % 3];
@@ -30,18 +29,20 @@ static void triangle_mean_values(const triangle_shape *shape, double part[3]) {
         tangent[c] = dot > 0 ? shape->double_area / (lengths + dot) : (lengths - dot) / shape->double_area;
     }
     for (int c = 0; c < 3; c++)
-        part[c] = (tangent[c] + tangent[(c + 1) % 3]) / shape->length[c] * shape->scale;
+        for (int k = 0; k < 2; k++)
+            part[c][k] = tangent[(c + k) % 3] / shape->length[c] * shape->scale;
 }
 
-/* An error that names the triangles of zero area, or of nearly none, on the edges whose weight is not positive and
- * finite. */
-static orb_status blame_triangles(const orb_mesh *mesh, const double *weights, orb_error *error) {
+/* An error that names the triangles of zero area, or of nearly none, on the edges whose weight, or one of their
+ * per_edge weights, is not positive and finite. */
+static orb_status blame_triangles(const orb_mesh *mesh, const double *weights, int per_edge, orb_error *error) {
     orb_found flat = {0}, beside = {0};
     for (int32_t t = 0; t < mesh->n_triangles; t++) {
         bool bad = false;
         for (int32_t h = 3 * t; h < 3 * t + 3; h++) {
-            const double weight = weights[mesh->edge[h]];
-            bad = bad || !(weight > 0) || !isfinite(weight);
+            const double *weight = weights + (size_t)per_edge * (size_t)mesh->edge[h];
+            for (int k = 0; k < per_edge; k++)
+                bad = bad || !(weight[k] > 0) || !isfinite(weight[k]);
         }
         if (!bad)
             continue;
@@ -93,23 +94,38 @@ static orb_status cotangent_weights(const orb_mesh *mesh, double clamp, double *
             ++*n_clamped;
     }
     free(raised);
-    return finite ? ORB_OK : blame_triangles(mesh, weights, error);
+    return finite ? ORB_OK : blame_triangles(mesh, weights, 1, error);
+}
+
+orb_status weights_mean_value_both(const orb_mesh *mesh, double *weights, orb_error *error) {
+    for (int32_t k = 0; k < 2 * mesh->n_edges; k++)
+        weights[k] = 0;
+    for (int32_t t = 0; t < mesh->n_triangles; t++) {
+        const triangle_shape shape = triangle_measure(mesh, t);
+        double part[3][2];
+        triangle_mean_values(&shape, part);
+        for (int32_t c = 0; c < 3; c++) {
+            const int32_t h = 3 * t + c, e = mesh->edge[h];
+            const int32_t turned = halfedge_from(mesh, h) != halfedge_from(mesh, mesh->edge_halfedge[e]);
+            weights[2 * e + turned] += part[c][0];
+            weights[2 * e + !turned] += part[c][1];
+        }
+    }
+    for (int32_t k = 0; k < 2 * mesh->n_edges; k++)
+        if (!(weights[k] > 0) || !isfinite(weights[k]))
+            return blame_triangles(mesh, weights, 2, error);
+    return ORB_OK;
 }
 
 static orb_status mean_value_weights(const orb_mesh *mesh, double *weights, orb_error *error) {
-    for (int32_t e = 0; e < mesh->n_edges; e++)
-        weights[e] = 0;
-    for (int32_t t = 0; t < mesh->n_triangles; t++) {
-        const triangle_shape shape = triangle_measure(mesh, t);
-        double part[3];
-        triangle_mean_values(&shape, part);
-        for (int32_t c = 0; c < 3; c++)
-            weights[mesh->edge[3 * t + c]] += 0.5 * part[c];
-    }
-    for (int32_t e = 0; e < mesh->n_edges; e++)
-        if (!(weights[e] > 0) || !isfinite(weights[e]))
-            return blame_triangles(mesh, weights, error);
-    return ORB_OK;
+    double *both = malloc((2 * (size_t)mesh->n_edges + 1) * sizeof *both);
+    if (!both)
+        return error_memory(error);
+    const orb_status status = weights_mean_value_both(mesh, both, error);
+    for (int32_t e = 0; e < mesh->n_edges && status == ORB_OK; e++)
+        weights[e] = 0.5 * (both[2 * e] + both[2 * e + 1]);
+    free(both);
+    return status;
 }
 
 /* --- weights given by the caller ------------------------------------------------------------------------------ */
@@ -251,9 +267,12 @@ orb_status weights_compute(const orb_mesh *mesh, const orb_request *request, dou
     orb_status status = ORB_OK;
     switch (request->weights) {
     case ORB_WEIGHTS_COTANGENT:
+    case ORB_WEIGHTS_CONFORMAL:
+    case ORB_WEIGHTS_DELAUNAY:
         status = cotangent_weights(mesh, request->clamp, weights, &counted, error);
         break;
     case ORB_WEIGHTS_MEAN_VALUE:
+    case ORB_WEIGHTS_MEAN_VALUE_EXACT:
         status = mean_value_weights(mesh, weights, error);
         break;
     case ORB_WEIGHTS_UNIFORM:
@@ -264,9 +283,10 @@ orb_status weights_compute(const orb_mesh *mesh, const orb_request *request, dou
         status = given_weights(mesh, request, weights, error);
         break;
     default:
-        status = error_set(error, ORB_BAD_ARGUMENT,
-                           "the kind of weights is %d: choose cotangent, mean-value, uniform or given",
-                           (int)request->weights);
+        status =
+            error_set(error, ORB_BAD_ARGUMENT,
+                      "the kind of weights is %d: choose cotangent, mean-value, uniform, given, conformal or Delaunay",
+                      (int)request->weights);
     }
     if (n_clamped)
         *n_clamped = counted;

@@ -104,6 +104,7 @@ static void run_cones(const char *name, const sample_mesh *mesh, const char *sig
     orb_error error;
     orb_mesh_arrays arrays = sample_arrays(mesh);
     orb_request request = orb_request_default();
+    request.weights = ORB_WEIGHTS_COTANGENT;
     request.signature = signature;
     request.n_cones = k;
     request.cones = cones;

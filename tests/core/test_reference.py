@@ -80,6 +80,18 @@ def test_authors_euclidean_result_up_to_a_similarity(name, signature):
     assert energy == pytest.approx(about["energy_clamped"], rel=1e-9)
 
 
+def test_authors_mean_values_up_to_a_similarity():
+    """Floater's weights as they stand, which are not symmetric."""
+    about, arrays, vertices, triangles = authors("e_sphere_t1_mvc")
+    result = core.embed(vertices, triangles, "442", about["cones_0based"], weights="mean-value-exact")
+    ours, theirs = chord_lengths(corners_of(result)), chord_lengths(arrays["X"][arrays["T"]])
+    scale = np.sqrt(plane_area(corners_of(result)) / plane_area(np.pad(arrays["X"], ((0, 0), (0, 1)))[arrays["T"]]))
+    assert np.abs(ours / theirs / scale - 1).max() < 1e-9
+    assert result.weights is None
+    symmetrised = core.embed(vertices, triangles, "442", about["cones_0based"], weights="mean-value")
+    assert np.abs(chord_lengths(corners_of(symmetrised)) / theirs / scale - 1).max() > 1e-3
+
+
 def test_authors_2222_up_to_an_affine_map():
     about, arrays, vertices, triangles = authors("e_sphere_t4_cot")
     result = core.embed(vertices, triangles, "2222", about["cones_0based"])

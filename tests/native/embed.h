@@ -15,6 +15,7 @@ static inline orb_status embed(const sample_mesh *mesh, const char *signature, i
     request.signature = signature;
     request.n_cones = n_cones;
     request.cones = cones;
+    request.weights = ORB_WEIGHTS_COTANGENT;
     request.clamp = clamp;
     return orb_embed(&arrays, &request, embedding, error);
 }

@@ -66,6 +66,7 @@ static orb_request asking(const char *signature, int32_t k, const int32_t *cones
     request.signature = signature;
     request.n_cones = k;
     request.cones = cones;
+    request.weights = ORB_WEIGHTS_COTANGENT;
     return request;
 }
 
@@ -113,4 +114,34 @@ TEST(out_of_memory_on_a_polygon) {
     orb_request request = orb_request_default();
     request.polygon = &(orb_polygon){.curvature = -1, .n_corners = 5};
     fail_each_of(sample_rectangle(1, 1.3, 4, 5), request);
+}
+
+/* Vertices moved out, or in the plane, so that edges must be flipped. */
+static sample_mesh rough(sample_mesh mesh, bool flat) {
+    random_state state = {9};
+    for (int32_t v = flat ? 3 : 0; v < mesh.n_vertices; v++)
+        for (int k = 0; k < 3; k++)
+            mesh.vertices[3 * v + k] += flat ? 0 : 0.25 * random_unit(&state);
+    for (int32_t v = flat ? 6 : 0; v < mesh.n_vertices && flat; v++)
+        mesh.vertices[3 * v] *= 1.1 - 0.2 * random_unit(&state);
+    return mesh;
+}
+
+static void fail_each_with(orb_weights weights, sample_mesh mesh, const char *signature, int32_t n_cones,
+                           const int32_t *cones) {
+    orb_request request = asking(signature, n_cones, cones);
+    request.weights = weights;
+    fail_each_of(mesh, request);
+}
+
+TEST(out_of_memory_with_conformal_weights) {
+    fail_each_with(ORB_WEIGHTS_CONFORMAL, rough(sample_icosphere(1), false), "432", 3, (int32_t[]){0, 14, 30});
+    fail_each_with(ORB_WEIGHTS_CONFORMAL, rough(sample_triangle(1, 1, 3), true), "*442", 3, (int32_t[]){0, 1, 2});
+    fail_each_with(ORB_WEIGHTS_CONFORMAL, rough(sample_projective_plane(1), false), "22x", 2, (int32_t[]){0, 9});
+}
+TEST(out_of_memory_with_delaunay_weights) {
+    fail_each_with(ORB_WEIGHTS_DELAUNAY, rough(sample_icosphere(1), false), "442", 3, (int32_t[]){0, 14, 30});
+}
+TEST(out_of_memory_with_exact_mean_values) {
+    fail_each_with(ORB_WEIGHTS_MEAN_VALUE_EXACT, sample_icosphere(1), "442", 3, (int32_t[]){0, 14, 30});
 }

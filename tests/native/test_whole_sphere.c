@@ -411,6 +411,7 @@ static orb_status embed(const sample_mesh *mesh, const char *signature, int32_t 
     request.signature = signature;
     request.n_cones = n_cones;
     request.cones = cones;
+    request.weights = ORB_WEIGHTS_COTANGENT; /* whose rate of convergence is known */
     return orb_embed(&arrays, &request, embedding, error);
 }
 

@@ -15,7 +15,7 @@ from harness import (  # noqa: E402
 )
 
 enable()
-core, blender_mesh, faces, charts = part("core"), part("blender_mesh"), part("faces"), part("charts")
+core, blender_mesh, faces, charts = part("core"), part("blender_mesh"), part("faces"), part("core.charts")
 
 SIGNATURES = ("442", "333", "632", "2222", "432", "532", "332", "22(5)", "33", "237", "22222", "2222222222")
 CHARTS = [(geometry, chart) for geometry, names in core.CHARTS.items() for chart in names]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The charts of native/src/layout.c as functions of any point, and back; no bpy.
+"""The charts of native/src/layout.c as functions of any point, and back.
 
 The library lays out the triangles that it was given. For triangles that faces.py moves and for the pixels of an image
 the same chart is needed elsewhere: its few constants are fitted to the corners that the library has laid out, which is
