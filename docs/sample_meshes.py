@@ -39,7 +39,7 @@ def vase(nx=160, ny=60):
 def moebius(nx=260, ny=24, width=0.75):
     def place(x, y):
         r = 1 + width * (y - 0.5) * np.cos(TURN * x / 2)
-        return r * np.cos(TURN * x), r * np.sin(TURN * x), width * (y - 0.5) * np.sin(TURN * x / 2)
+        return r * np.cos(TURN * x), width * (y - 0.5) * np.sin(TURN * x / 2), r * np.sin(TURN * x)
 
     return grid(nx, ny, lambda i, j: (i % nx, np.where(i == nx, ny - j, j)), place)
 
