@@ -56,7 +56,7 @@ def remarks(result: Result, layout: FaceLayout) -> list[str]:
 
 
 def _agree(arrays: MeshArrays, values: np.ndarray) -> None:
-    """The same value (m, 3, w), to the last digit, wherever a corner of a face occurs in several triangles; in place."""
+    """The same value (m, 3, w), exactly, wherever a corner of a face occurs in several triangles: in place."""
     if arrays.all_triangles:
         return
     _, first, place = np.unique(arrays.loops.ravel(), return_index=True, return_inverse=True)

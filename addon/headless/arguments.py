@@ -85,7 +85,8 @@ def _parser() -> argparse.ArgumentParser:
     add("mesh", metavar="MESH", nargs="?", type=Path,
         help=".obj .ply .stl .glb .gltf .fbx .blend .off; without it a sample creature is grown")
     add("--orbifold", metavar="SIGNATURE", default=DEFAULT_SIGNATURE,
-        help="Conway's notation: 442, 2222, 532, 22(12), 237, *632, 4*2, 22*, **, *x, xx, 22x, o, oo, ... (default %(default)s)")
+        help="Conway's notation: 442, 2222, 532, 22(12), 237, *632, 4*2, 22*, **, *x, xx, 22x, o, oo, ... "
+             "(default %(default)s)")
     add("--cones", metavar="i,j,k", default="auto", help="vertices, or auto (default)")
     add("--orders", metavar="n,n,n", help="the order of each cone, where not in the signature's sequence")
     add("--weights", metavar="KIND", choices=WEIGHTS, default="cotan",

@@ -140,8 +140,8 @@ ORB_API orb_status orb_signature_read(const char *signature, orb_signature_info 
                                       int32_t capacity, orb_error *error);
 
 /* The polygon of a signature's simplest cut, for drawings: points[capacity*3] of the geometry's model, of which the
- * first min(*n_corners, capacity) are written, counter-clockwise, and for each side whether it is a mirror. A side between
- * antipodal corners is given in two halves. */
+ * first min(*n_corners, capacity) are written, counter-clockwise, and for each side whether it is a mirror. A side
+ * between antipodal corners is given in two halves. */
 ORB_API orb_status orb_signature_tile(const char *signature, double *points, bool *mirrors, int32_t capacity,
                                       int32_t *n_corners, orb_error *error);
 

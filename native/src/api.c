@@ -43,9 +43,9 @@ static double cut_length(const orb_disk *disk) {
     return length;
 }
 
-/* A sphere with cones is cut along the path in which they were picked, every other surface along a graph. A tile of the
- * hyperbolic plane may be any polygon with the right angles: there, a path through many cones, or one that is blocked or
- * erratic, much longer than a graph, gives way to that (docs/decisions.md). */
+/* A sphere with cones is cut along the path in which they were picked, every other surface along a graph. A tile of
+ * the hyperbolic plane may be any polygon with the right angles: there, a path through many cones, or one that is
+ * blocked or erratic, much longer than a graph, gives way to that (docs/decisions.md). */
 static orb_status cut(orb_workshop *work, orb_error *error) {
     static const double erratic = 1.5;
     enum { MOST_ON_PATH = 12 };

@@ -94,8 +94,8 @@ static void edge_lengths(const orb_embedding *embedding, int32_t e, double side[
     const int32_t ends[2][2] = {{triangles[h], triangles[halfedge_next(h)]},
                                 {triangles[halfedge_next(twin)], triangles[twin]}};
     for (int k = 0; k < 2; k++)
-        side[k] = geometry_distance(embedding->tile->geometry, embedding->placed[ends[k][0]],
-                                    embedding->placed[ends[k][1]]);
+        side[k] =
+            geometry_distance(embedding->tile->geometry, embedding->placed[ends[k][0]], embedding->placed[ends[k][1]]);
 }
 
 /* Both copies of every edge have one length, relative to the edge itself or the median one, whichever is longer. */

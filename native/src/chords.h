@@ -1,7 +1,7 @@
 /* Edges that would lie flat on a mirror. SPDX-License-Identifier: GPL-3.0-or-later
  *
- * A chord is an edge inside that joins two vertices of one mirror side. Where it can be drawn aside to the mirror, it is
- * mapped onto it, and what lies between has no area. Halved, its midpoint is free to move away. */
+ * A chord is an edge inside that joins two vertices of one mirror side. Where it can be drawn aside to the mirror, it
+ * is mapped onto it, and what lies between has no area. Halved, its midpoint is free to move away. */
 #ifndef ORB_CHORDS_H
 #define ORB_CHORDS_H
 

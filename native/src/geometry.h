@@ -1,9 +1,10 @@
 /* The sphere, the plane and the hyperbolic plane, written once. SPDX-License-Identifier: GPL-3.0-or-later
  *
  * A point is a complex number z in the chart whose metric is 2 |dz| / (1 + K |z|^2): stereographic projection for
- * K = 1, half the usual coordinate for K = 0, the Poincaré disk for K = -1. Every orientation-preserving isometry
- * is z -> (a z + b) / (conj(a) - K conj(b) z) in all three, every other one the same of conj(z), and the translation that takes p to the origin is
- * z -> (z - p) / (1 + K conj(p) z). So K enters as a number, and nobody but this file and tile.c looks at it.
+ * K = 1, half the usual coordinate for K = 0, the Poincaré disk for K = -1. Every orientation-preserving isometry is
+ * z -> (a z + b) / (conj(a) - K conj(b) z) in all three, every other one the same of conj(z), and the translation that
+ * takes p to the origin is z -> (z - p) / (1 + K conj(p) z). So K enters as a number, and nobody but this file, tile.c
+ * and polygon.c looks at it.
  *
  * Points and isometries carry double-double precision (value + low part), since in the hyperbolic plane all of the
  * digits that tell far points apart lie at the end of z. Differences of points are then formed to full double

@@ -14,7 +14,7 @@ orb_isometry holonomy_element(const orb_tile *tile, orb_copy_place place) {
     return (place.kind == PLACE_SIDE ? tile->pairings : tile->elements)[place.index];
 }
 
-/* Its number in the list of isometries that holonomy_create makes: the identity, the pairings, the corners' elements. */
+/* Its number in the list that holonomy_create makes: the identity, the pairings, the corners' elements. */
 static int32_t element_number(const orb_tile *tile, orb_copy_place place) {
     if (place.kind == PLACE_SELF)
         return 0;

@@ -60,7 +60,8 @@ orb_status mesh_check_arrays(const orb_mesh_arrays *arrays, orb_error *error);
 /* Reads and checks the arrays: finite coordinates, indices, manifold edges and vertices, orientation. Components,
  * boundary and genus are counted, not judged. O(n). The first kind of defect is reported, in this order: those of
  * mesh_check_arrays, ORB_REPEATED_TRIANGLE (the repetitions are named, not the first one), ORB_NON_MANIFOLD_EDGE,
- * ORB_INCONSISTENT_ORIENTATION (of a surface that could be oriented), ORB_NON_MANIFOLD_VERTEX. On failure *mesh is NULL and nothing is left allocated. */
+ * ORB_INCONSISTENT_ORIENTATION (of a surface that could be oriented), ORB_NON_MANIFOLD_VERTEX. On failure *mesh is
+ * NULL and nothing is left allocated. */
 orb_status mesh_create(const orb_mesh_arrays *arrays, orb_mesh **mesh, orb_error *error);
 void mesh_free(orb_mesh *mesh);
 

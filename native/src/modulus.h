@@ -2,8 +2,8 @@
  *
  * Linear maps that commute with the linear parts of all side pairings take the harmonic map for one tile to that for
  * another one: all maps where these parts are +1 and -1 (2222, o), stretches along the mirrors or glides where there
- * are reflections with one pair of axes (*2222, 2*22, 22*, 22x, **, *x, xx), else none. So the shape is chosen after the
- * solve, by least conformal energy (2015, eq. 13), area weighted. */
+ * are reflections with one pair of axes (*2222, 2*22, 22*, 22x, **, *x, xx), else none. So the shape is chosen after
+ * the solve, by least conformal energy (2015, eq. 13), area weighted. */
 #ifndef ORB_MODULUS_H
 #define ORB_MODULUS_H
 

@@ -6,8 +6,8 @@
 
 #include "mesh.h"
 
-/* Sets mesh->orientable of a mesh whose half-edges are linked. Neighbours that face opposite ways are an error where the
- * surface has two sides: ORB_INCONSISTENT_ORIENTATION. */
+/* Sets mesh->orientable of a mesh whose half-edges are linked. Neighbours that face opposite ways are an error where
+ * the surface has two sides: ORB_INCONSISTENT_ORIENTATION. */
 orb_status orientation_check(orb_mesh *mesh, orb_error *error);
 
 #endif

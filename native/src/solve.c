@@ -11,7 +11,10 @@
 #include "modulus.h"
 #include "weights.h"
 
-enum { MOST_ROUNDS = 8 }; /* of solving and mending */
+enum {
+    MOST_ROUNDS = 8,      /* of solving and mending */
+    MANY_VERTICES = 40000 /* of a real system: from here on METIS's ordering saves more than it costs */
+};
 
 /* Without symmetry there is no energy, so a plane is needed, where the balance of forces is a linear system; and the
  * forces add up to nothing only if something takes up the rest, a cone, a corner or a fixed boundary. */
@@ -51,10 +54,11 @@ orb_status solve_set_up(orb_workshop *work, orb_error *error) {
         return status;
     double built = monitor_clock();
     if (!work->order) { /* else it is that of nearly the same edges */
+        bool slow = !work->system->is_complex && work->system->n_free > MANY_VERTICES;
         work->order = malloc(((size_t)work->system->n_free + 1) * sizeof *work->order);
         if (!work->order)
             return error_memory(error);
-        status = cholesky_order(&work->system->blocks, ORDERING_AMD, work->order, error);
+        status = cholesky_order(&work->system->blocks, slow ? ORDERING_METIS : ORDERING_AMD, work->order, error);
     }
     work->embedding->report.seconds_assemble += built - start;
     work->embedding->report.seconds_analyze += monitor_clock() - built;
@@ -107,19 +111,26 @@ done:
     return status;
 }
 
+static orb_status run_minimiser(orb_workshop *work, orb_minimum *minimum, orb_error *error) {
+    orb_report *report = &work->embedding->report;
+    orb_status status = newton_minimise(work->problem, work->system, work->order, work->embedding->position, minimum,
+                                        &work->monitor, error);
+    report->seconds_assemble += minimum->seconds_assemble;
+    report->seconds_analyze += minimum->seconds_analyze;
+    report->seconds_factor += minimum->seconds_factor;
+    report->seconds_solve += minimum->seconds_solve;
+    return status;
+}
+
 /* The fast way, and where it stagnates, the exact Hessian from the same start. */
 static orb_status find_minimum(orb_workshop *work, orb_minimum *minimum, orb_error *error) {
-    orb_point *position = work->embedding->position;
-    orb_status status =
-        newton_minimise(work->problem, work->system, work->order, position, minimum, &work->monitor, error);
+    orb_status status = run_minimiser(work, minimum, error);
     if (status != ORB_NOT_CONVERGED || !work->system->is_complex)
         return status;
     system_free(work->system);
     work->system = NULL;
     status = system_create(work->problem, false, &work->system, error);
-    if (status == ORB_OK)
-        status = newton_minimise(work->problem, work->system, work->order, position, minimum, &work->monitor, error);
-    return status;
+    return status == ORB_OK ? run_minimiser(work, minimum, error) : status;
 }
 
 /* Where the copies are. */
@@ -145,7 +156,9 @@ static orb_status keep_edges(orb_workshop *work, const bool *flipped, int round,
         free(work->order);
         work->order = NULL;
     }
+    double start = monitor_clock();
     orb_status status = intrinsic_triangulate(work->intrinsic, embedding, work->request->clamp, work->problem, error);
+    embedding->report.seconds_tile += monitor_clock() - start;
     system_free(work->system);
     work->system = NULL;
     return status == ORB_OK ? solve_set_up(work, error) : status;
@@ -179,8 +192,7 @@ static orb_status find_mended_minimum(orb_workshop *work, orb_minimum *minimum, 
             status = find_minimum(work, minimum, error);
             break;
         }
-        status = newton_minimise(work->problem, work->system, work->order, work->embedding->position, minimum,
-                                 &work->monitor, &stuck);
+        status = run_minimiser(work, minimum, &stuck);
         if (status != ORB_OK && status != ORB_NOT_CONVERGED) {
             if (error)
                 *error = stuck;
@@ -267,10 +279,6 @@ orb_status solve_minimise(orb_workshop *work, orb_error *error) {
     report->iterations = minimum.iterations;
     report->relative_gradient = minimum.relative_gradient;
     report->factor_nonzeros = minimum.factor_nonzeros;
-    report->seconds_assemble += minimum.seconds_assemble;
-    report->seconds_analyze += minimum.seconds_analyze;
-    report->seconds_factor = minimum.seconds_factor;
-    report->seconds_solve = minimum.seconds_solve;
     leave_weights(work);
     return ORB_OK;
 }

@@ -128,9 +128,9 @@ void system_spread_order(const orb_system *system, const int32_t *order, int32_t
             rows[filled++] = a;
 }
 
-/* One edge's four blocks, its directions at p and q in the vertices' own frames; where one of the two is mirrored, so is
- * the sense of the perpendiculars, and S changes its sign. At p: w ((1 + C)/2 y + (1 - C)/2 a_p^2 conj y), likewise at q; mixed, from q to p:
- * -w ((1 + S)/2 a_p conj(a_q) y + (1 - S)/2 a_p a_q conj y). */
+/* One edge's four blocks, its directions at p and q in the vertices' own frames; where one of the two is mirrored, so
+ * is the sense of the perpendiculars, and S changes its sign. At p: w ((1 + C)/2 y + (1 - C)/2 a_p^2 conj y), likewise
+ * at q; mixed, from q to p: -w ((1 + S)/2 a_p conj(a_q) y + (1 - S)/2 a_p a_q conj y). */
 static void add_edge(orb_system *system, const orb_problem *problem, int32_t e, orb_edge_terms edge,
                      const double complex *turn) {
     int32_t u = problem->edges[2 * e], v = problem->edges[2 * e + 1];

@@ -2,7 +2,7 @@
  *
  * A surface cut open along a graph is a disk; the edges of the graph are the disk's sides, and its nodes the disk's
  * corners. A side is glued to another one (a ... a^-1, or a ... a where orientation is reversed) or is a mirror, which
- * is a side glued to itself by a reflection. The word alone gives the orbifold's tile (docs/mathematics.md, section 4). */
+ * is a side glued to itself by a reflection. The word alone gives the tile (docs/mathematics.md, section 4). */
 #ifndef ORB_WORD_H
 #define ORB_WORD_H
 
@@ -45,7 +45,8 @@ orb_status word_of_cones(int32_t n_cones, const int32_t *orders, orb_word **word
 bool word_is_path(const orb_word *word);
 
 /* The simplest cut of a signature's orbifold: a sphere along a path; else arcs and loops from a corner or point of the
- * first mirror, from the first cone, or from an ordinary point. ORB_UNSUPPORTED_SIGNATURE for *, x and a plain sphere. */
+ * first mirror, from the first cone, or from an ordinary point. ORB_UNSUPPORTED_SIGNATURE for *, x and a plain
+ * sphere. */
 orb_status word_of_signature(const orb_signature *signature, orb_word **word, orb_error *error);
 
 #endif

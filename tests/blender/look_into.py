@@ -46,6 +46,7 @@ def seam_colours():
 
 
 at_seams = seam_colours()
+seams = sum(edge.use_seam for edge in mesh.edges)
 image = bpy.data.images.load(png)
 pixels = np.empty(len(image.pixels), np.float32)
 image.pixels.foreach_get(pixels)
@@ -57,15 +58,15 @@ seen = {
     "uv_maps": [layer.name for layer in mesh.uv_layers],
     "active_uv": mesh.uv_layers.active.name,
     "uv_triangles_without_area": int((area == 0).sum()),
-    "seams": sum(edge.use_seam for edge in mesh.edges),
+    "seams": seams,
     "shape_keys": [key.name for key in mesh.shape_keys.key_blocks] if mesh.shape_keys else [],
     "shape_key_values": [key.value for key in mesh.shape_keys.key_blocks[1:]] if mesh.shape_keys else [],
     "materials": len(mesh.materials),
     "material_reads_uv": any(getattr(node, "uv_map", "") == "Orbifold" for node in nodes),
     "images_without_data": [other.name for other in bpy.data.images if other is not image and not other.has_data
                             and other.type == "IMAGE" and len(other.pixels) == 0],
-    "seam_colour_gap": float(np.abs(at_seams[:, 0] - at_seams[:, 1]).max(axis=1).mean()),
-    "seam_colour_spread": float(at_seams.std(axis=0).mean()),
+    "seam_colour_gap": float(np.abs(at_seams[:, 0] - at_seams[:, 1]).max(axis=1).mean()) if seams else 0.0,
+    "seam_colour_spread": float(at_seams.std(axis=0).mean()) if seams else 1.0,
     "png_size": list(image.size),
     "png_spread": [float(pixels[:, :half].std()), float(pixels[:, half:].std())],
 }

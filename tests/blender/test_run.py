@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from inside import grids
 
 CHECKOUT = Path(__file__).resolve().parents[2]
 SHARED = CHECKOUT.parent / "shared"
@@ -109,11 +110,16 @@ def check_files(folder: Path, name: str, signature: str, cones: list[int]) -> di
     seen = in_blender("look_into.py", folder.parent / f"{name}-seen.json", folder / f"{name}.blend",
                       folder / f"{name}.png")
     layout = np.load(folder / f"{name}.npz")
-    assert seen["objects"] == 1 and seen["vertices"] == len(layout["vertices"])
+    refined = "refined_from" in layout
+    assert seen["objects"] == 1 and (refined or seen["vertices"] == len(layout["vertices"]))
+    assert seen["vertices"] == report["mesh"]["vertices"]
     assert "Orbifold" in seen["uv_maps"] and seen["active_uv"] == "Orbifold"
-    assert seen["uv_triangles_without_area"] == 0
-    assert seen["seams"] >= len(cones) - 1
-    assert ("Orbifold Sphere" in seen["shape_keys"]) == (report["orbifold"]["geometry"] == "spherical")
+    mirrored = "*" in signature
+    assert mirrored or seen["uv_triangles_without_area"] == 0
+    assert seen["seams"] >= (1 if "*" not in signature[:1] else 0)
+    assert mirrored or seen["seams"] >= len(cones) - 1
+    has_key = report["orbifold"]["geometry"] == "spherical" and not {"*", "x"} & set(signature[1:])
+    assert ("Orbifold Sphere" in seen["shape_keys"]) == has_key
     assert not any(seen["shape_key_values"]), "the object is not shown as it is"
     assert seen["materials"] == 1 and seen["material_reads_uv"] and seen["images_without_data"] == []
     # the two sides of a seam show the same colours, up to what the texture resolves
@@ -176,6 +182,43 @@ def test_creature(tmp_path: Path) -> None:
     check_files(tmp_path / "out", "creature", "442", cones)
     assert 15_000 < report["mesh"]["vertices"] < 25_000
     assert report["mesh"]["components"] == 1 and report["mesh"]["genus"] == 0
+
+
+ROWS = [(grids.disk, "4*2", 2), (grids.disk, "*432", 3), (grids.disk, "*237", 3), (grids.annulus, "**", 0),
+        (grids.mobius, "*x", 0), (grids.klein, "xx", 0), (grids.torus, "o2", 1)]
+
+
+@pytest.mark.parametrize(("make", "signature", "n_cones"), ROWS, ids=[row[1] for row in ROWS])
+def test_other_surfaces(tmp_path: Path, make, signature: str, n_cones: int) -> None:
+    """Mirrors, handles and cross-caps, cones and corners by themselves."""
+    mesh = write_off(tmp_path / "mesh.off", *make())
+    done = run(mesh, "--orbifold", signature, "--output", tmp_path / "out")
+    assert done.returncode == 0, done.stderr
+    cones = [cone["vertex"] for cone in json.loads((tmp_path / "out" / "mesh.json").read_text())["orbifold"]["cones"]]
+    assert len(cones) == n_cones
+    report = check_files(tmp_path / "out", "mesh", signature, cones)
+    assert [cone["mirror"] for cone in report["orbifold"]["cones"]] == [
+        number >= interior_orders(signature) for number in range(n_cones)
+    ]
+    assert report["mesh"]["orientable"] == ("x" not in signature)
+
+
+def interior_orders(signature: str) -> int:
+    return sum(character.isdigit() for character in signature.partition("*")[0])
+
+
+@pytest.mark.parametrize(("holes", "signature"), [("fill", "442"), ("mirror", "442**")])
+def test_holes(tmp_path: Path, holes: str, signature: str) -> None:
+    vertices, triangles = sphere_mesh()
+    cap = (triangles == len(vertices) - 2).any(1)
+    mesh = write_off(tmp_path / "mesh.off", vertices, triangles[~cap][:-1])
+    words = [mesh, "--cones", "100,150,250", "--output", tmp_path / "out"]
+    check_failure(run(*words), "hole|border|boundary|open")
+    done = run(*words, "--holes", holes, "--weights", "delaunay")
+    assert done.returncode == 0, done.stderr
+    assert ("2 holes were filled" in done.stdout) == (holes == "fill")
+    report = check_files(tmp_path / "out", "mesh", signature, [100, 150, 250])
+    assert report["mesh"]["boundary_loops"] == 2
 
 
 @pytest.mark.skipif(not SPOT.is_file(), reason="../shared/meshes/spot.obj is not there")

@@ -1,4 +1,4 @@
-/* The whole way: closed forms, independence of the cut, derivatives, errors. SPDX-License-Identifier: GPL-3.0-or-later */
+/* The whole way: closed forms, independence of the cut, errors. SPDX-License-Identifier: GPL-3.0-or-later */
 #include <complex.h>
 #include <stdlib.h>
 #include <string.h>

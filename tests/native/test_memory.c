@@ -81,8 +81,8 @@ TEST(out_of_memory_with_two_cones) { fail_each(sample_icosphere(1), "33", 2, (in
 TEST(out_of_memory_in_the_hyperbolic_plane) { fail_each(sample_icosphere(1), "237", 3, (int32_t[]){0, 14, 30}); }
 TEST(out_of_memory_on_a_refined_mesh) { fail_each(sample_cube(), "22222", 5, (int32_t[]){0, 6, 1, 7, 2}); }
 
-/* A disk, a band and a projective plane: mirrors that vertices slide along, chords that are halved, gluings that reflect,
- * holes that are filled. */
+/* A disk, a band and a projective plane: mirrors that vertices slide along, chords that are halved, gluings that
+ * reflect, holes that are filled. */
 TEST(out_of_memory_with_mirrors) { fail_each(sample_fan(7), "*442", 3, (int32_t[]){1, 3, 6}); }
 TEST(out_of_memory_with_a_cone_and_a_corner) { fail_each(sample_fan(7), "3*2", 2, (int32_t[]){0, 4}); }
 TEST(out_of_memory_on_an_annulus) { fail_each(sample_band(7, false), "**", 0, (int32_t[]){0}); }

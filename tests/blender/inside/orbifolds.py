@@ -4,10 +4,12 @@
 import os
 import sys
 
+import bmesh
 import bpy
 import numpy as np
 
 sys.path.insert(0, os.path.dirname(__file__))
+import grids  # noqa: E402
 from harness import (  # noqa: E402
     blob, click, edit_mode, enable, mesh_object, object_mode, part, picked, raises, run_checks,
 )
@@ -20,54 +22,11 @@ properties, surface, automatic = part("properties"), part("surface"), part("head
 # ---------------------------------------------------------------------------------------------------- meshes
 
 
-def grid(n, m, wrap, place, quads):
-    """As in tests/core/surfaces.py: each parameter open "-", joined "=" or, the first, joined upside down "~"."""
-    numbers, where = {}, []
-
-    def at(i, j):
-        if wrap[0] != "-" and i == n:
-            i, j = 0, (m - j if wrap[0] == "~" else j)
-        if wrap[1] == "=":
-            j %= m
-        if (i, j) not in numbers:
-            numbers[i, j] = len(where)
-            where.append((i / n, j / m))
-        return numbers[i, j]
-
-    found = []
-    for i in range(n):
-        for j in range(m):
-            a, b, c, d = at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)
-            found += [[a, b, c, d]] if quads else [[a, b, c], [a, c, d]] if (i + j) % 2 else [[a, b, d], [b, c, d]]
-    return mesh_object([place(2 * np.pi * u, 2 * np.pi * v) for u, v in where], found, "Grid")
+def made(mesh):
+    return lambda quads=False, **size: mesh_object(*mesh(quads, **size), "Grid")
 
 
-def disk(quads=False, n=12):
-    return grid(n, n, "--", lambda u, v: (u + 0.1 * v, v, 0.8 * np.sin(0.5 * u + 0.3 * v)), quads)
-
-
-def annulus(quads=False):
-    return grid(24, 6, "=-", lambda u, v: ((3 + v) * np.cos(u), (3 + v) * np.sin(u), np.cos(2 * u) * v / 6), quads)
-
-
-def mobius(quads=False):
-    def place(u, v):
-        across = 0.3 * (v - np.pi)
-        return (2 + across * np.cos(u / 2)) * np.cos(u), (2 + across * np.cos(u / 2)) * np.sin(u), across * np.sin(u / 2)
-
-    return grid(30, 6, "~-", place, quads)
-
-
-def klein(quads=False):
-    def place(u, v):
-        radius = 2.5 + np.cos(u / 2) * np.sin(v) - np.sin(u / 2) * np.sin(2 * v)
-        return radius * np.cos(u), radius * np.sin(u), np.sin(u / 2) * np.sin(v) + np.cos(u / 2) * np.sin(2 * v)
-
-    return grid(32, 16, "~=", place, quads)
-
-
-def torus(quads=False):
-    return grid(24, 12, "==", lambda u, v: ((2 + np.cos(v)) * np.cos(u), (2 + np.cos(v)) * np.sin(u), np.sin(v)), quads)
+disk, annulus, mobius, klein, torus = map(made, (grids.disk, grids.annulus, grids.mobius, grids.klein, grids.torus))
 
 
 def holed_blob(quads=False):
@@ -151,8 +110,6 @@ def check_a_cone_becomes_a_corner_where_a_face_is_deleted():
     click([50, 7, 100])
     bpy.ops.mesh.orbifold_add_cones()
     assert not any(item.mirror for item in obj.data.orbifold.cones)
-    import bmesh
-
     bm = bmesh.from_edit_mesh(obj.data)
     bm.verts.ensure_lookup_table()
     bmesh.ops.delete(bm, geom=[bm.verts[7].link_faces[0]], context="FACES")
