@@ -39,7 +39,7 @@ def vase(nx=160, ny=60):
 def moebius(nx=260, ny=24, width=0.75):
     def place(x, y):
         r = 1 + width * (y - 0.5) * np.cos(TURN * x / 2)
-        return r * np.cos(TURN * x), r * np.sin(TURN * x), width * (y - 0.5) * np.sin(TURN * x / 2)
+        return r * np.cos(TURN * x), width * (y - 0.5) * np.sin(TURN * x / 2), r * np.sin(TURN * x)
 
     return grid(nx, ny, lambda i, j: (i % nx, np.where(i == nx, ny - j, j)), place)
 
@@ -108,12 +108,15 @@ def mask(n=44, eyes=False):
 
     relief = 0.55 * np.sqrt(np.maximum(0, 1.15 - radius**2))
     relief += bump(0, -0.05, 0.11, 0.26, 0.26) + bump(0, -0.2, 0.17, 0.1, 0.12)  # nose
-    relief += bump(0, -0.5, 0.24, 0.055, 0.1) + bump(0, -0.62, 0.2, 0.06, 0.08) + bump(0, -0.88, 0.2, 0.12, 0.08)  # mouth, chin
+    relief += bump(0, -0.5, 0.24, 0.055, 0.1) + bump(0, -0.62, 0.2, 0.06, 0.08)  # lips
+    relief += bump(0, -0.88, 0.2, 0.12, 0.08)  # chin
     for side in (1, -1):
         relief += bump(side * 0.32, 0.34, 0.24, 0.07, 0.1) - bump(side * 0.3, 0.14, 0.17, 0.09, 0.16)  # brows, sockets
         relief += bump(side * 0.3, 0.13, 0.09, 0.05, 0.09) + bump(side * 0.42, -0.2, 0.2, 0.18, 0.07)  # eyes, cheeks
     vertices, triangles = np.stack([x, -relief, z], 1), triangles[:, ::-1]
-    return with_holes(vertices, triangles, [(0.3, 0.13), (-0.3, 0.13)], (0.15, 0.085)) if eyes else (vertices, triangles)
+    if eyes:
+        return with_holes(vertices, triangles, [(0.3, 0.13), (-0.3, 0.13)], (0.15, 0.085))
+    return vertices, triangles
 
 
 def with_holes(vertices, triangles, centres, radii):
@@ -132,7 +135,7 @@ def leaf(n=44):
     """A disk: its rim is longer than a flat one's, and goes up and down."""
     radius, angle, triangles = rings(n)
     bowl = 0.45 * radius**2 + 0.16 * radius**3 * np.sin(5 * angle)
-    return np.stack([radius * np.cos(angle), radius * np.sin(angle), bowl], 1) * [1.2, 0.9, 1.1], triangles
+    return np.stack([1.2 * radius * np.cos(angle), -1.1 * bowl, radius * np.sin(angle)], 1), triangles
 
 
 def boy(n=40):
@@ -162,10 +165,11 @@ def block(filled, fineness):
             at = np.argwhere(step == sign) + unit[axis]
             quads.append(np.stack([at, at + one, at + one + two, at + two][::-sign], 1))
     corners = np.concatenate(quads)
-    keys, number = np.unique(np.ravel_multi_index(corners.reshape(-1, 3).T, np.array(solid.shape) + 1), return_inverse=True)
+    shape = np.array(solid.shape) + 1
+    keys, number = np.unique(np.ravel_multi_index(corners.reshape(-1, 3).T, shape), return_inverse=True)
     a, b, c, d = number.reshape(-1, 4).T
     triangles = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
-    places = np.stack(np.unravel_index(keys, np.array(solid.shape) + 1), 1) / fineness
+    places = np.stack(np.unravel_index(keys, shape), 1) / fineness
     return smoothed(places, triangles, 3 * fineness), triangles
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Flat surfaces whose harmonic map onto their own orbifold is known: the identity, up to a similarity.
 
-Rows of equilateral triangles, glued to a torus, a Klein bottle, an annulus, a Moebius band, or not at all. Vertices may
-be moved at random as long as every cotangent weight of the flat metric is positive. Flat closed surfaces do not fit into
-space, but folded up they do: all triangles onto one, which is an isometry of each."""
+Rows of equilateral triangles, glued to a torus, a Klein bottle, an annulus, a Moebius band, or not at all. Vertices
+may be moved at random as long as every cotangent weight of the flat metric is positive. Flat closed surfaces do not fit
+into space, but folded up they do: all triangles onto one, which is an isometry of each."""
 
 from dataclasses import dataclass
 
@@ -116,6 +116,6 @@ def subdivided_triangle(corners, n):
                 triangles.append([number[i, j + 1, k], number[i + 1, j, k], number[i + 1, j + 1, k - 1]])
     triangles = np.array(triangles)
     barycentric = np.array(weights) / n
-    first = np.einsum("ij,ij->i", barycentric[triangles[:, 0]], np.cross(*(barycentric[triangles[:, c]] for c in (1, 2))))
-    triangles[first < 0] = triangles[first < 0][:, ::-1]
+    turned = np.linalg.det(barycentric[triangles]) < 0
+    triangles[turned] = triangles[turned][:, ::-1]
     return barycentric @ np.asarray(corners, float), triangles

@@ -22,7 +22,8 @@ def generated(generators, limit, probes):
 
 
 def times_covered(points, elements, triangles):
-    """How many of the images g(triangle) each point lies in: points (q, 3), triangles (m, 3, 3) of either orientation."""
+    """How many of the images g(triangle) each point lies in: points (q, 3), triangles (m, 3, 3) of either
+    orientation."""
     normals = np.stack([np.cross(triangles[:, k], triangles[:, (k + 1) % 3]) for k in range(3)], 1)
     normals *= np.sign(np.einsum("mk,mk->m", normals[:, 0], triangles[:, 2]))[:, None, None]
     count = np.zeros(len(points), int)

@@ -17,21 +17,27 @@ def judge_module():
 def verdict(result, folder):
     """What check_layout.py says of the result's file. He walks around vertices along the triangles' orientation, which
     changes sides within a surface with cross-caps: for those the weights are kept from him and judged here."""
+    if features(result.signature).crosscaps == 0:
+        shared_file("tools", "check_layout.py")
+        result.save(folder / "layout.npz")
+        return judge_module()["check"](folder / "layout.npz", 1e-7)
+    said = judge_without_weights(result, folder)
+    said["harmonic_residual"] = harmonic_residual(result)
+    if not said["harmonic_residual"] < 1e-6:
+        said["ok"] = False
+        said["why"].append("a free vertex is not at the Karcher mean of its neighbours")
+    return said
+
+
+def judge_without_weights(result, folder):
+    """All but the harmonic condition."""
     shared_file("tools", "check_layout.py")
     path = folder / "layout.npz"
     result.save(path)
-    one_sided = features(result.signature).crosscaps > 0
-    if one_sided:
-        with np.load(path) as file:
-            arrays = {name: file[name] for name in file if name != "weights"}
-        np.savez(path, **arrays)
-    said = judge_module()["check"](path, 1e-7)
-    if one_sided:
-        said["harmonic_residual"] = harmonic_residual(result)
-        if not said["harmonic_residual"] < 1e-6:
-            said["ok"] = False
-            said["why"].append("a free vertex is not at the Karcher mean of its neighbours")
-    return said
+    with np.load(path) as file:
+        arrays = {name: file[name] for name in file if name != "weights"}
+    np.savez(path, **arrays)
+    return judge_module()["check"](path, 1e-7)
 
 
 def model_points(result):

@@ -37,7 +37,7 @@ FLAT = ["o", "xx", "**", "*x", "*2222"]
 @pytest.mark.parametrize("nx, ny, shift", [(9, 8, 0), (6, 14, 3), (12, 4, 6)])
 def test_flat_surfaces_reproduce_themselves(signature, nx, ny, shift):
     flat = flat_surface(signature, nx, ny, shift, roughness=0.08 * (signature == "*2222"))
-    result = core.embed(flat.vertices, flat.triangles, signature, flat.cones)
+    result = core.embed(flat.vertices, flat.triangles, signature, flat.cones, weights="cotan")
     assert result.report["orbifold"]["moduli"] == (2 if signature == "o" else 1)
     assert result.report["distortion"]["quasi_conformal_max"] == pytest.approx(1, abs=1e-10)
     check_similar(result, flat.corners)
@@ -61,7 +61,7 @@ def test_any_flat_weights_give_an_affine_image(signature, nx, ny, shift):
 
 def test_the_modulus_of_a_torus_is_reported():
     flat = flat_surface("o", 9, 8, 3, roughness=0)
-    result = core.embed(flat.vertices, flat.triangles, "o", [])
+    result = core.embed(flat.vertices, flat.triangles, "o", [], weights="cotan")
     tau = complex(-3, 8 * HEIGHT) / 9
     found = complex(*result.report["orbifold"]["modulus"])
     alike = [s * z for z in (tau, -tau.conjugate(), -1 / tau, 1 / tau.conjugate()) for s in (1, -1)]
@@ -80,8 +80,9 @@ def test_plane_triangles_reproduce_themselves(signature, n):
     """Right triangles have weights of 0 along the hypotenuse; the clamp takes their place."""
     (orders,) = features(signature).mirrors
     points, triangles = subdivided_triangle(plane_triangle(orders), n)
-    vertices = np.column_stack([points, np.zeros(len(points))]) @ np.linalg.qr(np.arange(9).reshape(3, 3) + np.eye(3))[0]
-    result = core.embed(vertices, triangles, signature, [0, 1, 2], clamp=1e-13)
+    turn, _ = np.linalg.qr(np.arange(9).reshape(3, 3) + np.eye(3))
+    vertices = np.column_stack([points, np.zeros(len(points))]) @ turn
+    result = core.embed(vertices, triangles, signature, [0, 1, 2], weights="cotan", clamp=1e-13)
     check_similar(result, points[triangles])
 
 
@@ -114,7 +115,7 @@ def error_of_triangle(signature, n):
     flat, triangles = subdivided_triangle(corners, n)
     points = onto_model(flat, sign)
     vertices = points if sign > 0 else np.column_stack([points[:, :2] / (1 + points[:, 2:]), np.zeros(len(points))])
-    result = core.embed(vertices, triangles, signature, [0, 1, 2], clamp=1e-6)
+    result = core.embed(vertices, triangles, signature, [0, 1, 2], weights="cotan", clamp=1e-6)
     found = np.empty_like(points)
     found[triangles] = corners_of(result)
     motion = np.linalg.solve(found[:3], points[:3])  # the isometry, perhaps a reflection, of the corners

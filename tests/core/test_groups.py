@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The generators of an embedding make its group: spherical ones have 2 / chi elements and tile the sphere, Euclidean ones
-are the seventeen wallpaper groups, hyperbolic tiles have the area -2 pi chi and their images do not overlap."""
+"""The generators of an embedding make its group: spherical ones have 2 / chi elements and tile the sphere, Euclidean
+ones are the seventeen wallpaper groups, hyperbolic tiles have the area -2 pi chi and their images do not overlap."""
 
 import numpy as np
 import pytest

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Theorem 1 of 2016 and 2017, and Tutte's and Floater's: the boundary on a convex polygon of the sphere, the plane or the
-hyperbolic plane, and any positive weights inside: no triangle is flipped."""
+"""Theorem 1 of 2016 and 2017, and Tutte's and Floater's: the boundary on a convex polygon of the sphere, the plane or
+the hyperbolic plane, and any positive weights inside: no triangle is flipped."""
 
 import numpy as np
 import pytest
@@ -94,10 +94,11 @@ def check_boundary(result, corners, picked):
 def test_regular_polygons(geometry, n):
     for name in MESHES:
         vertices, triangles = MESHES[name]()
-        result = core.embed(vertices, triangles, None, [], polygon=core.Polygon(geometry, n=n))
+        result = core.embed(vertices, triangles, None, [], polygon=core.Polygon(geometry, n=n), weights="cotan")
         check(result, geometry)
         picked = along(vertices, boundary_loops(triangles)[0], n)
-        check(core.embed(vertices, triangles, None, picked, polygon=core.Polygon(geometry)), geometry)
+        result = core.embed(vertices, triangles, None, picked, polygon=core.Polygon(geometry), weights="cotan")
+        check(result, geometry)
 
 
 @pytest.mark.parametrize("radius", [0.01, 0.7, 1.3])
@@ -105,7 +106,8 @@ def test_regular_polygons(geometry, n):
 def test_radius_of_a_regular_polygon(geometry, radius):
     vertices, triangles = MESHES["disk"]()
     picked = along(vertices, boundary_loops(triangles)[0], 5)
-    result = core.embed(vertices, triangles, None, picked, polygon=core.Polygon(geometry, radius=radius))
+    polygon = core.Polygon(geometry, radius=radius)
+    result = core.embed(vertices, triangles, None, picked, weights="cotan", polygon=polygon)
     check(result, geometry)
     corners = np.empty((5, 3))
     for copy, v in enumerate(result.cut_to_vertex):
@@ -139,7 +141,8 @@ def test_corners_against_the_triangles_turn_the_mesh_over(geometry):
     vertices, triangles = MESHES["disk"]()
     corners = raised(np.array([[0.9, 0.1], [0, 1], [-0.8, 0.3], [-0.3, -0.6]]), geometry)
     picked = along(vertices, boundary_loops(triangles)[0], 4)[::-1]
-    result = core.embed(vertices, triangles, None, picked, polygon=core.Polygon(geometry, corners=corners))
+    polygon = core.Polygon(geometry, corners=corners)
+    result = core.embed(vertices, triangles, None, picked, weights="cotan", polygon=polygon)
     check(result, geometry)
     check_boundary(result, corners, picked)
 

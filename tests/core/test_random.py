@@ -56,7 +56,7 @@ def test_random_orbifolds(seed, tmp_path):
         if not signature:
             continue
         try:
-            result = core.embed(*mesh, signature, picks)
+            result = core.embed(*mesh, signature, picks, weights="cotan")
         except core.OrbifoldError as error:
             near = error.status == "ORB_BAD_CONE" and "neighbours" in str(error)  # opposite poles on one edge
             assert error.status in REFUSALS or near, f"{signature}: {error}"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The disks of ../shared/reference: an independent program's energies with mirror corners, and the papers' authors' disks
-in the plane and on the sphere."""
+"""The disks of ../shared/reference: an independent program's energies with mirror corners, and the papers' authors'
+disks in the plane and on the sphere."""
 
 import json
 
@@ -35,7 +35,8 @@ def plane_area(corners):
 def test_energy_of_an_independent_program(case):
     shared_file("reference", "energies.json")
     vertices, triangles = core.read_mesh(shared_file("meshes", case["mesh"]))
-    result = core.embed(vertices, triangles, case["signature"], case["corners_ccw"], clamp=case["clamp"])
+    corners, clamp = case["corners_ccw"], case["clamp"]
+    result = core.embed(vertices, triangles, case["signature"], corners, weights="cotan", clamp=clamp)
     energy = result.report["solver"]["energy"]
     if result.geometry == "euclidean":  # theirs has the sides sin(pi / n_i)
         energy *= np.prod(np.sin(np.pi / result.orders)) / 2 / plane_area(corners_of(result))

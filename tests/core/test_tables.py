@@ -5,16 +5,16 @@ library and judged by check_layout.py."""
 import pytest
 from conway import features
 from families import EUCLIDEAN, HYPERBOLIC, SPHERICAL, cases, mesh_named
-from judged import verdict
+from judged import judge_without_weights, verdict
 from picks import picks_for
 
 import core
 
 
-def embedded(signature, name, start=0.1, **options):
+def embedded(signature, name, weights="cotan"):
     wanted = features(signature)
-    vertices, triangles = mesh_named(wanted.topology, name)
-    return core.embed(vertices, triangles, signature, picks_for(vertices, triangles, wanted, start), **options)
+    mesh = mesh_named(wanted.topology, name)
+    return core.embed(*mesh, signature, picks_for(*mesh, wanted), weights=weights)
 
 
 def check(signature, name, folder):
@@ -45,6 +45,19 @@ def test_euclidean(signature, mesh, tmp_path):
 @pytest.mark.parametrize("signature, mesh", cases(HYPERBOLIC))
 def test_hyperbolic(signature, mesh, tmp_path):
     check(signature, mesh, tmp_path)
+
+
+@pytest.mark.parametrize("weights", ["conformal", "delaunay", "mean-value"])
+@pytest.mark.parametrize("signature, mesh", cases(SPHERICAL + EUCLIDEAN + HYPERBOLIC)[::2])
+def test_other_weights(signature, mesh, weights, tmp_path):
+    """Some live on the edges of another triangulation: then there is no harmonic condition to judge."""
+    result = embedded(signature, mesh, weights)
+    if result.weights is None:
+        said = judge_without_weights(result, tmp_path)
+    else:
+        said = verdict(result, tmp_path)
+    assert said["ok"], said["why"]
+    assert result.report["certificate"]["flipped"] == 0
 
 
 def test_the_tables_are_complete():
