@@ -89,7 +89,7 @@ def _parser() -> argparse.ArgumentParser:
              "(default %(default)s)")
     add("--cones", metavar="i,j,k", default="auto", help="vertices, or auto (default)")
     add("--orders", metavar="n,n,n", help="the order of each cone, where not in the signature's sequence")
-    add("--weights", metavar="KIND", choices=WEIGHTS, default="cotan",
+    add("--weights", metavar="KIND", choices=WEIGHTS, default="conformal",
         help=f"{', '.join(WEIGHTS[:-1])} (plane only) or {WEIGHTS[-1]} (default %(default)s)")
     add("--holes", choices=HOLES, default="refuse",
         help="boundary loops beyond the signature's mirrors: refuse, fill or mirror (default %(default)s)")

@@ -67,14 +67,14 @@ class EmbeddingOperator:
         name="Weights",
         description="How strongly each edge of the mesh pulls",
         items=(
-            ("cotan", "Cotangent", "Least angle distortion; negative weights are clamped"),
+            ("conformal", "Conformal", "Cotangents of the target's own metric: least angle distortion"),
+            ("cotan", "Cotangent", "Those of the mesh, negative ones clamped: the papers' weights, and faster"),
             ("mean-value", "Mean Value", "Positive by themselves, no clamping"),
             ("uniform", "Uniform", "All edges alike: ignores the shape of the triangles"),
-            ("conformal", "Conformal", "Cotangents of the target's own metric: conformal and without flips"),
             ("delaunay", "Delaunay", "Cotangents on the intrinsic Delaunay triangulation, positive by themselves"),
             ("mean-value-exact", "Mean Value, Exact", "Floater's weights as they stand, not symmetric: plane only"),
         ),
-        default="cotan",
+        default="conformal",
     )
     clamp: bpy.props.FloatProperty(
         name="Clamp",

@@ -36,7 +36,7 @@ class UV_OT_orbifold_unwrap(UVOperator, bpy.types.Operator):
             layout.prop(self, "holes")
         layout.prop(self, "weights")
         row = layout.row()
-        row.active = self.weights == "cotan"
+        row.active = self.weights in ("conformal", "cotan", "delaunay")
         row.prop(self, "clamp")
         self.draw_writing(_geometry(self.signature))
 
