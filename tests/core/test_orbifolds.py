@@ -5,6 +5,8 @@ import json
 
 import numpy as np
 import pytest
+import families
+import shapes
 import surfaces
 from meshes import CHECK_LAYOUT, judge
 
@@ -104,7 +106,7 @@ def test_exact_mean_value_weights_are_for_the_plane(tmp_path):
 
 
 def test_corners_may_be_given_in_another_sequence():
-    mesh = surfaces.disk()
+    mesh = shapes.disk()
     a, b, c = surfaces.picks_for(mesh, "*632")
     plain = core.embed(*mesh, "*632", [a, b, c])
     other = core.embed(*mesh, "*632", [c, a, b], orders=[2, 6, 3])
@@ -114,7 +116,7 @@ def test_corners_may_be_given_in_another_sequence():
 
 
 def test_a_mesh_that_is_not_orientable_may_have_any_orientation():
-    vertices, triangles = surfaces.klein()
+    vertices, triangles = shapes.klein_figure_eight()
     turned = triangles.copy()
     turned[::2] = turned[::2, ::-1]
     result = core.embed(vertices, turned, "xx")
@@ -125,7 +127,7 @@ def test_a_mesh_that_is_not_orientable_may_have_any_orientation():
 @pytest.mark.parametrize("holes, signature, expected", [("fill", "442", "442"), ("mirror", "442", "442**"),
                                                         ("fill", "*222", "*222"), ("mirror", "*222", "*222*")])
 def test_holes(holes, signature, expected, tmp_path):
-    mesh = surfaces.punctured(surfaces.sphere(), 2)
+    mesh = families.holed(families.ellipsoid(), 2)
     picks = surfaces.picks_for(mesh, signature)
     with pytest.raises(core.OrbifoldError) as caught:
         core.embed(*mesh, signature, picks)
@@ -156,7 +158,7 @@ def test_chords_between_mirrors_are_halved(tmp_path):
 @pytest.mark.parametrize("geometry", ["euclidean", "spherical", "hyperbolic"])
 @pytest.mark.parametrize("n", [0, 3, 5])
 def test_fixed_boundary(geometry, n):
-    mesh = surfaces.disk()
+    mesh = shapes.disk()
     result = core.embed(*mesh, polygon=core.Polygon(geometry, n=n))
     assert result.geometry == geometry and not len(result.seams) and result.uv.shape == (len(mesh[1]), 3, 2)
     assert (uv_area(result.tile_uv(result.chart)) > 0).all()
@@ -169,7 +171,7 @@ def test_fixed_boundary(geometry, n):
 
 
 def test_fixed_boundary_with_corners_of_its_own():
-    mesh = surfaces.disk()
+    mesh = shapes.disk()
     corners = np.array([[0, 0], [3, 0], [3, 1], [0, 1.0]])
     result = core.embed(*mesh, polygon=core.Polygon(corners=corners))
     assert np.allclose(result.embedding[:, :2].min(0), 0) and np.allclose(result.embedding[:, :2].max(0), [3, 1])
@@ -195,18 +197,18 @@ def test_fixed_boundary_with_corners_of_its_own():
 )
 def test_bad_arguments(options):
     with pytest.raises(core.OrbifoldError) as caught:
-        core.embed(*surfaces.disk(4), cones=[0, 4, 24], **options)
+        core.embed(*shapes.disk(4), cones=[0, 4, 24], **options)
     assert caught.value.status == "ORB_BAD_ARGUMENT" and "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize(
     "signature, mesh, status",
     [
-        ("442", surfaces.disk, "ORB_BOUNDARY"),
-        ("**", surfaces.disk, "ORB_BOUNDARY"),
-        ("o", surfaces.klein, "ORB_WRONG_GENUS"),
-        ("oo", surfaces.torus, "ORB_WRONG_GENUS"),
-        ("*442", surfaces.sphere, "ORB_BOUNDARY"),
+        ("442", shapes.disk, "ORB_BOUNDARY"),
+        ("**", shapes.disk, "ORB_BOUNDARY"),
+        ("o", shapes.klein_figure_eight, "ORB_WRONG_GENUS"),
+        ("oo", shapes.torus, "ORB_WRONG_GENUS"),
+        ("*442", families.ellipsoid, "ORB_BOUNDARY"),
     ],
 )
 def test_a_signature_of_another_surface(signature, mesh, status):
@@ -217,7 +219,7 @@ def test_a_signature_of_another_surface(signature, mesh, status):
 
 
 def test_corners_lie_on_the_border_and_cones_do_not():
-    mesh = surfaces.disk()
+    mesh = shapes.disk()
     corner, inside = int(core.topology_of(mesh[1]).loops[0][0]), surfaces.picks_for(mesh, "5*")[0]
     for cones in ([inside, inside + 1], [corner, corner + 1]):
         with pytest.raises(core.OrbifoldError) as caught:

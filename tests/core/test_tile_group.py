@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+import shapes
 import surfaces
 
 import core
@@ -64,7 +65,7 @@ def test_rows_that_agree_are_one_however_they_are_rounded():
 
 def test_picks_by_themselves_are_even_and_repeatable():
     automatic = surfaces.bare("headless.automatic")
-    mesh = surfaces.disk(24)
+    mesh = shapes.disk(24)
     picks = surfaces.picks_for(mesh, "53*2222")
     assert picks == surfaces.picks_for(mesh, "53*2222") and len(set(picks)) == 6
     loop = core.topology_of(mesh[1]).loops[0]
@@ -75,6 +76,6 @@ def test_picks_by_themselves_are_even_and_repeatable():
     steps = np.diff([*along[at], along[at[0]] + total]) % total
     assert np.abs(steps / total - 0.25).max() < 0.03
     with pytest.raises(surfaces.bare("headless.errors").RunError, match="boundary loop"):
-        automatic.automatic_cones(*mesh, core.parse_signature("*2222" + "2" * 100))
+        automatic.automatic_cones(*mesh, core.parse_signature("*2222" + "2" * 200))
     with pytest.raises(surfaces.bare("headless.errors").RunError, match="mirrors"):
         automatic.automatic_cones(*mesh, core.parse_signature("*22*22"))

@@ -3,7 +3,8 @@
 
 import numpy as np
 import pytest
-import surfaces
+import families
+import shapes
 from meshes import icosphere, tetrahedron
 
 import core
@@ -11,16 +12,16 @@ import core
 # mesh: Euler characteristic, boundary loops, orientable, genus
 KNOWN = {
     "tetrahedron": (tetrahedron, 2, 0, True, 0),
-    "sphere": (surfaces.sphere, 2, 0, True, 0),
-    "disk": (surfaces.disk, 1, 1, True, 0),
-    "annulus": (surfaces.annulus, 0, 2, True, 0),
-    "Möbius band": (surfaces.mobius, 0, 1, False, 1),
-    "Klein bottle": (surfaces.klein, 0, 0, False, 2),
-    "torus": (surfaces.torus, 0, 0, True, 1),
-    "projective plane": (surfaces.boy, 1, 0, False, 1),
-    "genus 2": (lambda: surfaces.holed(2), -2, 0, True, 2),
-    "genus 3": (lambda: surfaces.holed(3, 0), -4, 0, True, 3),
-    "torus with two borders": (lambda: surfaces.punctured(surfaces.torus(), 2), -2, 2, True, 1),
+    "sphere": (families.ellipsoid, 2, 0, True, 0),
+    "disk": (shapes.disk, 1, 1, True, 0),
+    "annulus": (shapes.annulus, 0, 2, True, 0),
+    "Möbius band": (shapes.moebius_band, 0, 1, False, 1),
+    "Klein bottle": (shapes.klein_figure_eight, 0, 0, False, 2),
+    "torus": (shapes.torus, 0, 0, True, 1),
+    "projective plane": (shapes.boy_surface, 1, 0, False, 1),
+    "genus 2": (lambda: shapes.pretzel(2), -2, 0, True, 2),
+    "genus 3": (lambda: shapes.pretzel(3), -4, 0, True, 3),
+    "torus with two borders": (lambda: families.holed(shapes.torus(), 2), -2, 2, True, 1),
 }
 
 
@@ -44,7 +45,7 @@ def test_turned_triangles_do_not_matter(name):
 
 
 def test_loops_run_along_the_boundary_the_longest_first():
-    vertices, triangles = surfaces.punctured(surfaces.disk(), 2)
+    vertices, triangles = families.holed(shapes.disk(), 2)
     loops = core.topology_of(triangles).loops
     halfedges = {(int(t[k]), int(t[(k + 1) % 3])) for t in triangles for k in range(3)}
     single = {edge for edge in halfedges if edge[::-1] not in halfedges}
