@@ -4,7 +4,7 @@
 bl_info = {
     "name": "Orbifold UV",
     "author": "The Orbifold UV authors",
-    "version": (0, 1, 0),
+    "version": (0, 2, 0),
     "blender": (3, 4, 0),
     "location": "UV menu > Orbifold Unwrap; Sidebar > Orbifold",
     "description": "Seamless UV maps without flips, by orbifold embeddings, with a proof for each",

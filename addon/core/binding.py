@@ -16,7 +16,7 @@ import numpy as np
 
 from .errors import OrbifoldError
 
-VERSION = "0.1.0"
+VERSION = "0.2.0"
 LIBRARY = Path(__file__).with_name("liborbifold.so")
 
 OK = 0

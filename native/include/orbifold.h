@@ -235,7 +235,7 @@ ORB_API void orb_job_cancel(orb_job *job);
 /* Waits, hands over the embedding (or the error), and frees the job, which may be NULL. */
 ORB_API orb_status orb_job_finish(orb_job *job, orb_embedding **embedding, orb_error *error);
 
-ORB_API const char *orb_version(void); /* "0.1.0" */
+ORB_API const char *orb_version(void); /* "0.2.0" */
 
 #ifdef __cplusplus
 }

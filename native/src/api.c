@@ -12,7 +12,7 @@
 #include "solve.h"
 #include "weights.h"
 
-const char *orb_version(void) { return "0.1.0"; }
+const char *orb_version(void) { return "0.2.0"; }
 
 orb_request orb_request_default(void) { return (orb_request){.weights = ORB_WEIGHTS_CONFORMAL, .clamp = 0.01}; }
 
