@@ -51,7 +51,7 @@ def prepare(make, signature, quads=False):
     obj = make(quads)
     arrays = blender_mesh.read_mesh(obj.data)
     chosen = automatic.automatic_cones(arrays.vertices, arrays.triangles, core.parse_signature(signature))
-    result = core.embed(arrays.vertices, arrays.triangles, signature, chosen)
+    result = core.embed(arrays.vertices, arrays.triangles, signature, chosen, weights="conformal")
     obj.data.orbifold.signature = signature
     properties.set_cones(obj.data, chosen, [None] * len(chosen))
     assert obj.data.orbifold.signature == signature and [order for _, order in picked(obj)] == result.orders.tolist()
@@ -373,13 +373,13 @@ def check_holes_are_refused_filled_or_mirrored():
     assert bpy.ops.uv.orbifold_unwrap(holes="fill") == {"FINISHED"}
     assert (len(obj.data.vertices), len(obj.data.polygons)) == count
     arrays = blender_mesh.read_mesh(obj.data)
-    result = core.embed(arrays.vertices, arrays.triangles, "442", chosen, holes="fill")
+    result = core.embed(arrays.vertices, arrays.triangles, "442", chosen, holes="fill", weights="conformal")
     assert result.filled_holes == 2
     assert same_uv(obj, arrays, result)
     assert (charts.areas(corner_uv(obj, arrays).astype(float)) > 0).all()
     obj.data.orbifold.holes = "mirror"
     assert bpy.ops.uv.orbifold_unwrap() == {"FINISHED"}
-    result = core.embed(arrays.vertices, arrays.triangles, "442", chosen, holes="mirror")
+    result = core.embed(arrays.vertices, arrays.triangles, "442", chosen, holes="mirror", weights="conformal")
     assert same_uv(obj, arrays, result)
 
 
@@ -399,14 +399,16 @@ def check_fixed_boundary():
         obj = disk()
         assert bpy.ops.uv.orbifold_fixed_boundary(geometry=geometry, sides=5) == {"FINISHED"}
         arrays = blender_mesh.read_mesh(obj.data)
-        result = core.embed(arrays.vertices, arrays.triangles, polygon=core.Polygon(geometry, n=5))
+        result = core.embed(arrays.vertices, arrays.triangles, polygon=core.Polygon(geometry, n=5),
+                            weights="conformal")
         assert same_uv(obj, arrays, result), geometry
         assert not seam_pairs(obj)
         corners = on_the_border(obj, 3)
         properties.set_cones(obj.data, corners, [2, 2, 2])
         before = obj.data.orbifold.signature
         assert bpy.ops.uv.orbifold_fixed_boundary(geometry=geometry, pattern=True) == {"FINISHED"}
-        result = core.embed(arrays.vertices, arrays.triangles, cones=corners, polygon=core.Polygon(geometry, n=3))
+        result = core.embed(arrays.vertices, arrays.triangles, cones=corners, polygon=core.Polygon(geometry, n=3),
+                            weights="conformal")
         assert same_uv(obj, arrays, result), geometry
         assert obj.data.orbifold.signature == before
     blob()

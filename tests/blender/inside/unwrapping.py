@@ -22,10 +22,10 @@ CHARTS = [(geometry, chart) for geometry, names in core.CHARTS.items() for chart
 EXAMPLE = {"euclidean": "442", "spherical": "432", "hyperbolic": "237"}
 
 
-def computed(obj, signature, cones, **settings):
-    """The same by core itself."""
+def computed(obj, signature, cones, weights="conformal", **settings):
+    """The same by core itself, with the operators' default weights."""
     arrays = blender_mesh.read_mesh(obj.data)
-    return arrays, core.embed(arrays.vertices, arrays.triangles, signature, cones, **settings)
+    return arrays, core.embed(arrays.vertices, arrays.triangles, signature, cones, weights=weights, **settings)
 
 
 def corner_uv(obj, arrays):
@@ -67,7 +67,7 @@ def check_every_signature_gives_the_uv_of_core():
 
 def check_every_layout_and_kind_of_weights():
     for geometry, chart in CHARTS:
-        for weights in ("cotan", "mean-value", "uniform"):
+        for weights in ("cotan", "mean-value", "uniform", "conformal", "delaunay"):
             obj = blob()
             cones = set_cones(obj, EXAMPLE[geometry])
             bpy.ops.uv.orbifold_unwrap(weights=weights, **{f"chart_{geometry}": chart})
@@ -160,7 +160,7 @@ def check_folds_and_the_date_line_are_seams():
         for polygon in obj.data.polygons:
             own = [tuple(uv[loop]) for loop in polygon.loop_indices]
             at_pole = chart == "equirectangular" and any(abs(p[1] - 0.5) > 0.4 for p in own)  # wide there
-            assert at_pole or np.ptp(own, axis=0).max() < 0.3, (case, polygon.index, own)
+            assert at_pole or np.ptp(own, axis=0).max() < 0.5, (case, polygon.index, own)  # across the line: near 1
             around = list(polygon.vertices)
             for a, b, p, q in zip(around, around[1:] + around[:1], own, own[1:] + own[:1]):
                 sides.setdefault((min(a, b), max(a, b)), []).append((p, q) if a < b else (q, p))
