@@ -141,15 +141,16 @@ def check_mended_faces_are_moved_by_isometries():
 
 
 def check_folds_and_the_date_line_are_seams():
-    """Charts with a discontinuity of their own: faces do not cross it, and edges along it are seams as well."""
+    """Charts with a discontinuity of their own: faces do not cross it, and edges along it are seams as well. (With
+    cotangents: the conformal map of two cones near one another draws the faces at the cones half round the sphere.)"""
     cases = [(chart, signature, make) for chart in charts.DISCONTINUOUS for signature in ("22", "33")
              for make in (lambda: blob(4), quad_blob)]
     further = {chart: 0 for chart in charts.DISCONTINUOUS}
     for chart, signature, make in cases:
         obj = make()
         cones = set_cones(obj, signature)
-        bpy.ops.uv.orbifold_unwrap(sphere_key=False, chart_spherical=chart)
-        arrays, result = computed(obj, signature, cones)
+        bpy.ops.uv.orbifold_unwrap(sphere_key=False, chart_spherical=chart, weights="cotan")
+        arrays, result = computed(obj, signature, cones, weights="cotan")
         case, uv = (chart, signature, obj.name), blender_mesh.read_uv(obj.data)
         assert np.abs(charts.without_poles(chart, faces.layout_of(result, arrays, chart).uv)
                       - charts.without_poles(chart, corner_uv(obj, arrays))).max() < 1e-6, case
@@ -160,7 +161,7 @@ def check_folds_and_the_date_line_are_seams():
         for polygon in obj.data.polygons:
             own = [tuple(uv[loop]) for loop in polygon.loop_indices]
             at_pole = chart == "equirectangular" and any(abs(p[1] - 0.5) > 0.4 for p in own)  # wide there
-            assert at_pole or np.ptp(own, axis=0).max() < 0.5, (case, polygon.index, own)  # across the line: near 1
+            assert at_pole or np.ptp(own, axis=0).max() < 0.3, (case, polygon.index, own)
             around = list(polygon.vertices)
             for a, b, p, q in zip(around, around[1:] + around[:1], own, own[1:] + own[:1]):
                 sides.setdefault((min(a, b), max(a, b)), []).append((p, q) if a < b else (q, p))
