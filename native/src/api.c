@@ -33,42 +33,6 @@ static orb_status read_input(orb_workshop *work, const orb_mesh_arrays *arrays, 
                            error);
 }
 
-static bool is_sphere(const orb_signature *s) { return s && !s->n_mirrors && !s->n_crosscaps && !s->n_handles; }
-
-/* Half of the disk's circumference. */
-static double cut_length(const orb_disk *disk) {
-    double length = 0;
-    for (int32_t h = 0; h < 3 * disk->mesh->n_triangles; h++)
-        length += disk->side[h] >= 0 ? mesh_edge_length(disk->mesh, h) / 2 : 0;
-    return length;
-}
-
-/* A sphere with cones is cut along the path in which they were picked, every other surface along a graph. A tile of
- * the hyperbolic plane may be any polygon with the right angles: there, a path through many cones, or one that is
- * blocked or erratic, much longer than a graph, gives way to that (docs/decisions.md). */
-static orb_status cut(orb_workshop *work, orb_error *error) {
-    static const double erratic = 1.5;
-    enum { MOST_ON_PATH = 12 };
-    const orb_surface *surface = work->embedding->surface;
-    const orb_signature *signature = surface->signature;
-    orb_marks marks = surface_marks(surface);
-    orb_disk *graph = NULL;
-    if (!is_sphere(signature))
-        return cut_surface(surface->mesh, surface->parent, &marks, signature ? -1 : 0, &work->disk, error);
-    bool free_tile = signature->curvature < 0 && marks.n > 3, many = free_tile && marks.n > MOST_ON_PATH;
-    orb_status status = many ? ORB_CUT_BLOCKED : cut_path(surface->mesh, &marks, &work->disk, error);
-    if (!free_tile || (status != ORB_OK && status != ORB_CUT_BLOCKED))
-        return status;
-    status = cut_surface(surface->mesh, NULL, &marks, -1, &graph, error);
-    if (status == ORB_OK && (!work->disk || cut_length(work->disk) > erratic * cut_length(graph))) {
-        disk_free(work->disk);
-        work->disk = graph;
-        return status;
-    }
-    disk_free(graph);
-    return status;
-}
-
 /* Two cones or corners of a lune are antipodal: an edge between them would be no one geodesic. */
 static orb_status refuse_edge_between_poles(const orb_workshop *work, orb_error *error) {
     const orb_embedding *embedding = work->embedding;
@@ -95,7 +59,8 @@ static orb_status cut_and_glue(orb_workshop *work, orb_error *error) {
     orb_report *report = &embedding->report;
     const orb_signature *signature = embedding->surface->signature;
     double start = monitor_clock();
-    orb_status status = cut(work, error);
+    orb_marks marks = surface_marks(embedding->surface);
+    orb_status status = cut_open(embedding->mesh, signature, embedding->surface->parent, &marks, &work->disk, error);
     report->seconds_cut = monitor_clock() - start;
     if (status != ORB_OK)
         return status;

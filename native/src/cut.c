@@ -268,3 +268,40 @@ orb_status cut_surface(orb_mesh *mesh, const int32_t *parent, const orb_marks *m
     free(cut);
     return status;
 }
+
+/* Half of the disk's circumference. */
+static double cut_length(const orb_disk *disk) {
+    double length = 0;
+    for (int32_t h = 0; h < 3 * disk->mesh->n_triangles; h++)
+        length += disk->side[h] >= 0 ? mesh_edge_length(disk->mesh, h) / 2 : 0;
+    return length;
+}
+
+/* A path through many cones, or one that is blocked or erratic, much longer than a graph, gives way to that. */
+static orb_status path_or_graph(orb_mesh *mesh, const orb_marks *marks, orb_disk **disk, orb_error *error) {
+    static const double erratic = 1.5;
+    enum { MOST_ON_PATH = 12 };
+    orb_disk *path = NULL;
+    orb_status status = marks->n > MOST_ON_PATH ? ORB_CUT_BLOCKED : cut_path(mesh, marks, &path, error);
+    if (status != ORB_OK && status != ORB_CUT_BLOCKED)
+        return status;
+    status = cut_surface(mesh, NULL, marks, -1, disk, error);
+    if (path && (status != ORB_OK || !(cut_length(path) > erratic * cut_length(*disk)))) {
+        disk_free(*disk);
+        *disk = path;
+        return ORB_OK;
+    }
+    disk_free(path);
+    return status;
+}
+
+orb_status cut_open(orb_mesh *mesh, const orb_signature *signature, const int32_t *parent, const orb_marks *marks,
+                    orb_disk **disk, orb_error *error) {
+    *disk = NULL;
+    bool sphere = signature && !signature->n_mirrors && !signature->n_crosscaps && !signature->n_handles;
+    if (!sphere)
+        return cut_surface(mesh, parent, marks, signature ? -1 : 0, disk, error);
+    if (signature->curvature < 0 && marks->n > 3)
+        return path_or_graph(mesh, marks, disk, error);
+    return cut_path(mesh, marks, disk, error);
+}

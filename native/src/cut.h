@@ -20,4 +20,11 @@ orb_status cut_path(const orb_mesh *mesh, const orb_marks *cones, orb_disk **dis
 orb_status cut_surface(orb_mesh *mesh, const int32_t *parent, const orb_marks *marks, int32_t first, orb_disk **disk,
                        orb_error *error);
 
+/* The cut that a signature's orbifold gets; NULL: a polygon's disk, whose first mark becomes corner 0. A sphere with
+ * cones is cut along the path in which they were picked, every other surface along a graph; and as a tile of the
+ * hyperbolic plane may be any polygon with the right angles, a sphere with many cones there, too
+ * (docs/decisions.md). `parent`: as in cut_surface. */
+orb_status cut_open(orb_mesh *mesh, const orb_signature *signature, const int32_t *parent, const orb_marks *marks,
+                    orb_disk **disk, orb_error *error);
+
 #endif

@@ -225,17 +225,58 @@ static int32_t find_root(const orb_mesh *mesh, int32_t n_cones, const int32_t *c
     return n_cones > 0 ? cones[0] : mesh->triangles[0];
 }
 
+static double cut_length(const worker *w) {
+    double length = 0;
+    for (int32_t e = 0; e < w->mesh->n_edges; e++)
+        length += w->cut[e] ? mesh_edge_length(w->mesh, w->mesh->edge_halfedge[e]) : 0;
+    return length;
+}
+
+/* The vertex that is farthest from all roots so far; nearest[n_vertices] is how far. */
+static int32_t next_root(const worker *w, double *nearest) {
+    int32_t farthest = w->mesh->triangles[0];
+    for (int32_t v = 0; v < w->mesh->n_vertices; v++) {
+        nearest[v] = fmin(nearest[v], w->mesh->vertex_halfedge[v] < 0 ? 0 : w->distance[v]);
+        farthest = nearest[v] > nearest[farthest] ? v : farthest;
+    }
+    return farthest;
+}
+
+/* w->cut from the best of several roots, all over the surface. */
+static orb_status try_roots(worker *w, int32_t root, int32_t n_roots, int32_t n_cones, const int32_t *cones,
+                            orb_error *error) {
+    double *nearest = malloc(((size_t)w->mesh->n_vertices + 1) * sizeof *nearest), shortest = INFINITY;
+    uint8_t *best = malloc((size_t)w->mesh->n_edges + 1);
+    orb_status status = nearest && best ? ORB_OK : error_memory(error);
+    for (int32_t v = 0; v < w->mesh->n_vertices && status == ORB_OK; v++)
+        nearest[v] = INFINITY;
+    for (int32_t k = 0; k < n_roots && status == ORB_OK; k++) {
+        grow_tree(w, root);
+        grow_cotree(w);
+        root = next_root(w, nearest);
+        prune(w, n_cones, cones);
+        double length = cut_length(w);
+        if (k == 0 || length < shortest) {
+            shortest = length;
+            memcpy(best, w->cut, (size_t)w->mesh->n_edges);
+        }
+    }
+    if (status == ORB_OK)
+        memcpy(w->cut, best, (size_t)w->mesh->n_edges);
+    free(nearest);
+    free(best);
+    return status;
+}
+
 orb_status cut_graph_find(const orb_mesh *mesh, const int32_t *parent, int32_t n_cones, const int32_t *cones,
                           uint8_t *cut, orb_error *error) {
+    enum { ROOTS = 12 };
     worker w = {.mesh = mesh, .parent = parent, .cut = cut};
-    orb_status status = ORB_OK;
+    bool one = mesh->n_boundary_loops > 0 || n_cones == 1 || n_cones == 2; /* the boundary; loops through a cone */
+    orb_status status = error_memory(error);
     if (worker_allocate(&w)) {
         list_incident_edges(&w);
-        grow_tree(&w, find_root(mesh, n_cones, cones));
-        grow_cotree(&w);
-        prune(&w, n_cones, cones);
-    } else {
-        status = error_memory(error);
+        status = try_roots(&w, find_root(mesh, n_cones, cones), one ? 1 : ROOTS, n_cones, cones, error);
     }
     worker_free(&w);
     return status;

@@ -168,7 +168,8 @@ def test_certified_uvs_are_kept_where_the_whole_sphere_is_too_coarse(tmp_path: P
     outwards = np.array([t if np.linalg.det(vertices[list(t)]) > 0 else t[::-1] for t in triangles])
     poles = [0, int(np.argmin(vertices @ vertices[0]))]
     mesh = write_off(tmp_path / "ico.off", vertices, outwards)
-    done = run(mesh, "--orbifold", "(100)(100)", "--cones", ",".join(map(str, poles)), "--output", tmp_path / "out")
+    done = run(mesh, "--orbifold", "(100)(100)", "--cones", ",".join(map(str, poles)), "--weights", "cotan",
+               "--output", tmp_path / "out")
     assert done.returncode == 0, done.stderr
     assert "no shape key" in done.stdout
     assert {path.suffix for path in (tmp_path / "out").iterdir()} == ENDINGS

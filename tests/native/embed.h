@@ -35,12 +35,10 @@ static inline void pick_cones(random_state *state, int32_t n_vertices, int32_t k
 
 /* The problem that an embedding solved, set up once more; it borrows the embedding's arrays. */
 static inline orb_status problem_of(orb_embedding *embedding, orb_problem **problem, orb_error *error) {
-    const orb_signature *s = embedding->surface->signature;
     orb_disk *disk = NULL;
     orb_marks marks = surface_marks(embedding->surface);
-    bool sphere = s->n_mirrors + s->n_crosscaps + s->n_handles == 0;
-    orb_status status = sphere ? cut_path(embedding->mesh, &marks, &disk, error)
-                               : cut_surface(embedding->mesh, embedding->surface->parent, &marks, -1, &disk, error);
+    orb_status status =
+        cut_open(embedding->mesh, embedding->surface->signature, embedding->surface->parent, &marks, &disk, error);
     if (status == ORB_OK)
         status = problem_create(embedding->mesh, embedding->copies, disk, embedding->tile, embedding->weights, problem,
                                 error);
