@@ -68,6 +68,7 @@ want_docs() {
     want_blender
     want_python numpy
     want pngquant pngquant
+    want imagemagick montage
 }
 
 install_missing() {

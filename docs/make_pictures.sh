@@ -40,6 +40,14 @@ picture() {
     rm -r "${work:?}/$name"
 }
 
+# All of them on one sheet, for the README.
+sheet() {
+    local signature mesh files=()
+    while read -r signature mesh; do files+=("$pictures/$(file_of "$signature").png"); done < <(xargs -n 2 <<<"$table")
+    montage "${files[@]}" -tile 9x -geometry 213x120+1+1 -background white "$work/families.png"
+    pngquant --force --speed 1 --strip --output "$docs/families.png" "$colours" -- "$work/families.png"
+}
+
 main() {
     local signature mesh failed=0
     mkdir -p "$work" "$pictures"
@@ -49,6 +57,7 @@ main() {
             picture "$signature" "$mesh" || failed=$((failed + 1))
         fi
     done < <(xargs -n 2 <<<"$table")
+    sheet
     du -sh "$pictures" | sed 's/\t.*/ of pictures/'
     [ $failed = 0 ] || { echo "error: $failed pictures could not be made" >&2; exit 1; }
 }
