@@ -12,7 +12,6 @@ import numpy as np
 
 from . import binding
 from .errors import OrbifoldError
-from .whole import whole_layout
 
 # The charts of each geometry; the first is its default.
 CHARTS = {
@@ -62,15 +61,12 @@ class Result:
 
     @cached_property
     def corner_copies(self) -> np.ndarray:
-        """(m_in, 3) the copy of a vertex that each given triangle corner is. Of a triangle that the cut runs through
-        (`uv_chart`) not all are on one side of it."""
+        """(m_in, 3) the copy of a vertex that each given triangle corner is: the cut runs along given edges only."""
         return self.cut_triangles.ravel()[self.input_corners]
 
     def uv_chart(self, chart: str) -> np.ndarray:
-        """(m_in, 3, 2) texture coordinates in one of the charts of this geometry (`CHARTS`); in one piece also where
-        the cut runs through a given triangle, along the line on which an edge of it was halved."""
-        uv = self.tile_uv(chart) if self.refined_from is None else whole_layout(self, chart).uv
-        return uv.reshape(-1, 2)[self.input_corners]
+        """(m_in, 3, 2) texture coordinates in one of the charts of this geometry (`CHARTS`)."""
+        return self.tile_uv(chart).reshape(-1, 2)[self.input_corners]
 
     def tile_uv(self, chart: str) -> np.ndarray:
         """(m, 3, 2) the same for `triangles`."""

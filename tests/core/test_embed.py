@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from meshes import CHECK_LAYOUT, cube, far_apart, icosphere, judge, octahedron, tetrahedron
+from meshes import CHECK_LAYOUT, agrees, cube, far_apart, icosphere, judge, octahedron, tetrahedron, uv_area
 
 import core
 
@@ -27,21 +27,6 @@ def embedded(signature, level=3, **options):
     vertices, triangles = icosphere(level)
     cones = far_apart(vertices, triangles, len(core.parse_signature(signature).orders))
     return core.embed(vertices, triangles, signature, cones, **options)
-
-
-def agrees(result, folder):
-    """check_layout.py is content, where it is there; what the report says is checked in any case."""
-    certificate = result.report["certificate"]
-    assert certificate["flipped"] == 0 and certificate["seam_residual"] < 1e-7
-    result.save(folder / "mesh.npz")
-    if CHECK_LAYOUT.is_file():
-        said = judge(folder / "mesh.npz")
-        assert said["ok"], said["why"]
-
-
-def uv_area(uv):
-    a, b = uv[:, 1] - uv[:, 0], uv[:, 2] - uv[:, 0]
-    return (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
 
 
 @pytest.mark.skipif(not CHECK_LAYOUT.is_file(), reason="../shared/tools/check_layout.py is not there")

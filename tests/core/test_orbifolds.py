@@ -8,7 +8,7 @@ import pytest
 import families
 import shapes
 import surfaces
-from meshes import CHECK_LAYOUT, judge
+from meshes import agrees, uv_area
 
 import core
 
@@ -22,20 +22,6 @@ WEIGHTS = ["cotan", "mean-value", "uniform", "conformal", "delaunay"]
 def embedded(signature, mesh=None, **options):
     mesh = mesh or surfaces.surface_for(signature)
     return core.embed(*mesh, signature, surfaces.picks_for(mesh, signature), **options)
-
-
-def agrees(result, folder):
-    certificate = result.report["certificate"]
-    assert certificate["flipped"] == 0 and certificate["seam_residual"] < 1e-7
-    result.save(folder / "mesh.npz")
-    if CHECK_LAYOUT.is_file():
-        said = judge(folder / "mesh.npz")
-        assert said["ok"], said["why"]
-
-
-def uv_area(uv):
-    a, b = uv[:, 1] - uv[:, 0], uv[:, 2] - uv[:, 0]
-    return (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
 
 
 @pytest.mark.parametrize("signature", [*SPHERICAL, *EUCLIDEAN, *HYPERBOLIC])

@@ -2,6 +2,7 @@
 """Every orbifold of both tables, and a wide choice of hyperbolic ones, on two meshes of its topology: certified by the
 library and judged by check_layout.py."""
 
+import numpy as np
 import pytest
 from conway import features
 from families import EUCLIDEAN, HYPERBOLIC, SPHERICAL, cases, mesh_named
@@ -17,6 +18,16 @@ def embedded(signature, name, weights="cotan"):
     return core.embed(*mesh, signature, picks_for(*mesh, wanted), weights=weights)
 
 
+def check_pieces(result):
+    """The cut runs along given edges only: in all pieces of a given triangle each vertex is the same copy."""
+    if result.refined_from is None:
+        return
+    inside = np.repeat(result.refined_from >= 0, 3)
+    corner = np.stack([np.repeat(result.refined_from, 3), result.triangles.ravel()], 1)[inside]
+    both = np.column_stack([corner, result.cut_triangles.ravel()[inside]])
+    assert len(np.unique(both, axis=0)) == len(np.unique(corner, axis=0))
+
+
 def check(signature, name, folder):
     result, wanted = embedded(signature, name), features(signature)
     report = result.report
@@ -27,6 +38,7 @@ def check(signature, name, folder):
     assert [(cone["order"], cone["mirror"]) for cone in report["orbifold"]["cones"]] == [*zip(wanted.orders, mirrors)]
     handles, crosscaps, boundaries = wanted.topology
     assert report["mesh"]["boundary_loops"] == boundaries and report["mesh"]["genus"] == handles + crosscaps
+    check_pieces(result)
     said = verdict(result, folder)
     assert said["ok"], said["why"]
     assert said["harmonic_residual"] < 1e-6 and report["solver"]["relative_gradient"] < 1e-6

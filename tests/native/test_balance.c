@@ -4,22 +4,10 @@
 #include "balance.h"
 #include "check.h"
 #include "embed.h"
+#include "failing.h"
 #include "lu.h"
 #include "random.h"
 #include "weights.h"
-
-static long allocations, failing = -1; /* -1: none fails */
-
-void *__real_malloc(size_t size);
-void *__real_calloc(size_t count, size_t size);
-void *__real_realloc(void *old, size_t size);
-void *__wrap_malloc(size_t size);
-void *__wrap_calloc(size_t count, size_t size);
-void *__wrap_realloc(void *old, size_t size);
-
-void *__wrap_malloc(size_t size) { return allocations++ == failing ? NULL : __real_malloc(size); }
-void *__wrap_calloc(size_t count, size_t size) { return allocations++ == failing ? NULL : __real_calloc(count, size); }
-void *__wrap_realloc(void *old, size_t size) { return allocations++ == failing ? NULL : __real_realloc(old, size); }
 
 /* --- lu.c ------------------------------------------------------------------------------------------------------- */
 

@@ -5,20 +5,8 @@
 #include <stdlib.h>
 
 #include "check.h"
+#include "failing.h"
 #include "surfaces.h"
-
-static long allocations, failing = -1; /* -1: none fails */
-
-void *__real_malloc(size_t size);
-void *__real_calloc(size_t count, size_t size);
-void *__real_realloc(void *old, size_t size);
-void *__wrap_malloc(size_t size);
-void *__wrap_calloc(size_t count, size_t size);
-void *__wrap_realloc(void *old, size_t size);
-
-void *__wrap_malloc(size_t size) { return allocations++ == failing ? NULL : __real_malloc(size); }
-void *__wrap_calloc(size_t count, size_t size) { return allocations++ == failing ? NULL : __real_calloc(count, size); }
-void *__wrap_realloc(void *old, size_t size) { return allocations++ == failing ? NULL : __real_realloc(old, size); }
 
 /* Embeds, reads the UVs and, on the sphere, the whole sphere. */
 static orb_status use_everything(const sample_mesh *mesh, const orb_request *request, double *room) {
