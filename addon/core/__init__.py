@@ -24,7 +24,6 @@ from .signatures import (
     tile_outline,
 )
 from .suggest import (
-    ATTEMPTS,
     DEPENDS_ON_CONES,
     Prediction,
     Suggestion,
@@ -32,12 +31,12 @@ from .suggest import (
     predict,
     start_suggesting,
     suggest_cones,
+    worth_trying,
 )
 from .topology import Topology, topology_of
 from .whole import WholeLayout, edge_keys, whole_layout
 
 __all__ = [
-    "ATTEMPTS",
     "CHARTS",
     "DEPENDS_ON_CONES",
     "EmbeddingJob",
@@ -70,4 +69,5 @@ __all__ = [
     "tile_outline",
     "topology_of",
     "whole_layout",
+    "worth_trying",
 ]

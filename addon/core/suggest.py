@@ -17,8 +17,10 @@ from . import binding
 from .arrays import holes_of, integers, mesh_of, picks_of, unknown
 from .errors import OrbifoldError
 from .jobs import Job, Progress, wait_for
+from .signatures import geometry_of
 
 ATTEMPTS = 5  # suggestions to try before giving up, where an embedding fails for its cones
+PLANE_ONLY = "mean-value-exact"  # weights
 # What may go well with other cones on the same mesh.
 DEPENDS_ON_CONES = ("ORB_CUT_BLOCKED", "ORB_NOT_CONVERGED", "ORB_CERTIFICATE_FAILED", "ORB_LINEAR_SOLVER")
 
@@ -120,6 +122,13 @@ def predict(
     return Prediction(
         *binding.predict(points, faces, binding.request_of(signature, picked, orders, holes_of(holes)))
     )
+
+
+def worth_trying(suggestions: Sequence[Suggestion], weights: str = "conformal") -> list[Suggestion]:
+    """Those to embed in turn, with these weights, until one does not fail with a status of DEPENDS_ON_CONES."""
+    if weights == PLANE_ONLY:
+        suggestions = [one for one in suggestions if geometry_of(one.signature) == "euclidean"] or suggestions
+    return list(suggestions[:ATTEMPTS])
 
 
 def _suggestions_of(native: binding.Suggestions) -> list[Suggestion]:
