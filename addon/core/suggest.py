@@ -27,7 +27,7 @@ DEPENDS_ON_CONES = ("ORB_CUT_BLOCKED", "ORB_NOT_CONVERGED", "ORB_CERTIFICATE_FAI
 
 @dataclass(frozen=True)
 class Suggestion:
-    """Cones for a mesh. A spread is the area-weighted standard deviation of log(area on the tile / area on the mesh)."""
+    """Cones for a mesh. Spreads are area-weighted standard deviations of log(area on the tile / area on the mesh)."""
 
     signature: str
     cones: tuple[int, ...]  # vertices, in the signature's sequence, as `embed` takes them
@@ -99,11 +99,7 @@ def suggest_cones(
 
     Raises OrbifoldError. Signatures that do not fit are left out, unless that leaves nothing.
     """
-    job = start_suggesting(
-        *(vertices, triangles, signatures, fixed, keep_away),
-        holes=holes,
-        symmetry=symmetry,
-    )
+    job = start_suggesting(vertices, triangles, signatures, fixed, keep_away, holes=holes, symmetry=symmetry)
     return wait_for(job, progress)
 
 

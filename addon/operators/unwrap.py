@@ -72,7 +72,8 @@ class UV_OT_orbifold_unwrap(SuggestingOperator, UVOperator, bpy.types.Operator):
     def start(self, context: bpy.types.Context) -> core.Job:
         if self._missing is None:
             return super().start(context)
-        return self.suggesting(*(self._missing.signature, self._missing.fixed), self.holes_of(context.active_object.data))
+        holes = self.holes_of(context.active_object.data)
+        return self.suggesting(self._missing.signature, self._missing.fixed, holes)
 
     def proceed(self, context: bpy.types.Context, job: core.Job) -> Union[core.Job, str]:
         mesh = context.active_object.data

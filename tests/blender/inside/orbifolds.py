@@ -17,7 +17,7 @@ from harness import (  # noqa: E402
 
 enable()
 core, blender_mesh, faces, charts = part("core"), part("blender_mesh"), part("faces"), part("core.charts")
-properties, surface, automatic = part("properties"), part("surface"), part("headless.automatic")
+properties, surface = part("properties"), part("surface")
 
 
 # ---------------------------------------------------------------------------------------------------- meshes
@@ -47,15 +47,21 @@ CASES = [
 
 
 def prepare(make, signature, quads=False):
-    """An object with cones at automatic places and the signature; its arrays and the result of core."""
+    """An object with suggested cones and the signature; its arrays and the result of core."""
     obj = make(quads)
     arrays = blender_mesh.read_mesh(obj.data)
-    chosen = automatic.automatic_cones(arrays.vertices, arrays.triangles, core.parse_signature(signature))
+    chosen = suggested(arrays, signature)
     result = core.embed(arrays.vertices, arrays.triangles, signature, chosen, weights="conformal")
     obj.data.orbifold.signature = signature
     properties.set_cones(obj.data, chosen, [None] * len(chosen))
     assert obj.data.orbifold.signature == signature and [order for _, order in picked(obj)] == result.orders.tolist()
     return obj, arrays, result
+
+
+def suggested(arrays, signature, **settings):
+    if not core.parse_signature(signature).orders:
+        return []
+    return list(core.suggest_cones(arrays.vertices, arrays.triangles, signature, **settings)[0].cones)
 
 
 def corner_uv(obj, arrays):
@@ -359,7 +365,7 @@ def check_other_spherical_orbifolds_have_uvs_and_no_key():
 
 def inside_of(obj):
     arrays = blender_mesh.read_mesh(obj.data)
-    return automatic.automatic_cones(arrays.vertices, arrays.triangles, core.parse_signature("442"))
+    return suggested(arrays, "442", holes="fill")
 
 
 def check_holes_are_refused_filled_or_mirrored():
