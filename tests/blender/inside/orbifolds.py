@@ -9,11 +9,14 @@ import bmesh
 import bpy
 import numpy as np
 
-sys.path.insert(0, os.path.dirname(__file__))
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [HERE, os.path.join(HERE, "..", "..", "core")]
 import grids  # noqa: E402
+from conway import features  # noqa: E402
 from harness import (  # noqa: E402
     blob, click, edit_mode, enable, mesh_object, object_mode, part, picked, raises, run_checks,
 )
+from picks import inside, picks_for  # noqa: E402
 
 enable()
 core, blender_mesh, faces, charts = part("core"), part("blender_mesh"), part("faces"), part("core.charts")
@@ -47,21 +50,15 @@ CASES = [
 
 
 def prepare(make, signature, quads=False):
-    """An object with suggested cones and the signature; its arrays and the result of core."""
+    """An object with cones far from one another and the border, and the signature; its arrays and the result of core."""
     obj = make(quads)
     arrays = blender_mesh.read_mesh(obj.data)
-    chosen = suggested(arrays, signature)
+    chosen = picks_for(arrays.vertices, arrays.triangles, features(signature))
     result = core.embed(arrays.vertices, arrays.triangles, signature, chosen, weights="conformal")
     obj.data.orbifold.signature = signature
     properties.set_cones(obj.data, chosen, [None] * len(chosen))
     assert obj.data.orbifold.signature == signature and [order for _, order in picked(obj)] == result.orders.tolist()
     return obj, arrays, result
-
-
-def suggested(arrays, signature, **settings):
-    if not core.parse_signature(signature).orders:
-        return []
-    return list(core.suggest_cones(arrays.vertices, arrays.triangles, signature, **settings)[0].cones)
 
 
 def corner_uv(obj, arrays):
@@ -365,7 +362,7 @@ def check_other_spherical_orbifolds_have_uvs_and_no_key():
 
 def inside_of(obj):
     arrays = blender_mesh.read_mesh(obj.data)
-    return suggested(arrays, "442", holes="fill")
+    return inside(arrays.vertices, arrays.triangles, 3)
 
 
 def check_holes_are_refused_filled_or_mirrored():
