@@ -27,13 +27,12 @@ orb_status plan_create(const char *text, orb_signature *signature, orb_plan **re
     const size_t room = (size_t)plan->n_cones + 1, length = strlen(text) + 1;
     plan->text = malloc(length);
     plan->slots = malloc(room * sizeof *plan->slots);
-    plan->places = malloc(room * sizeof *plan->places);
+    plan->sites = malloc(room * sizeof *plan->sites);
     plan->pinned = malloc(room);
     plan->radius = malloc(room * sizeof *plan->radius);
     plan->cones = malloc(room * sizeof *plan->cones);
     plan->charges = malloc(room * sizeof *plan->charges);
-    if (!plan->text || !plan->slots || !plan->places || !plan->pinned || !plan->radius || !plan->cones ||
-        !plan->charges)
+    if (!plan->text || !plan->slots || !plan->sites || !plan->pinned || !plan->radius || !plan->cones || !plan->charges)
         return error_memory(error);
     memcpy(plan->text, text, length);
     for (int32_t i = 0; i < plan->n_cones; i++)
@@ -48,7 +47,7 @@ void plan_free(orb_plan *plan) {
     free(plan->text);
     signature_free(plan->signature);
     free(plan->slots);
-    free(plan->places);
+    free(plan->sites);
     free(plan->pinned);
     free(plan->radius);
     free(plan->cones);
@@ -65,9 +64,8 @@ typedef struct crowd {
 } crowd;
 
 static bool corners_are_alike(const orb_signature *s, int32_t mirror) {
-    const int32_t *order = s->orders + s->n_cones;
     for (int32_t i = s->mirror_start[mirror]; i < s->mirror_start[mirror + 1]; i++)
-        if (order[i] != order[s->mirror_start[mirror]])
+        if (s->orders[i] != s->orders[s->mirror_start[mirror]])
             return false;
     return true;
 }
@@ -77,8 +75,8 @@ static int32_t list_crowds(const orb_plan *plan, const int32_t *loop_of, bool sy
     const orb_signature *s = plan->signature;
     int32_t n = 0;
     for (int32_t m = -1; m < s->n_mirrors; m++) {
-        const int32_t first = m < 0 ? 0 : s->n_cones + s->mirror_start[m];
-        const int32_t end = m < 0 ? s->n_cones : s->n_cones + s->mirror_start[m + 1];
+        const int32_t first = m < 0 ? 0 : s->mirror_start[m];
+        const int32_t end = m < 0 ? s->n_cones : s->mirror_start[m + 1];
         const bool sequence = m >= 0 && end - first > 3 && !corners_are_alike(s, m);
         const int32_t own = n;
         for (int32_t i = first; i < end; i++) {
@@ -151,7 +149,7 @@ orb_status plan_place(orb_plan *plan, const orb_ground *ground, const orb_option
         plan->n_slots = n_slots;
         memcpy(plan->slots, slots, (size_t)n_slots * sizeof *slots);
         for (int32_t i = 0; i < n_slots; i++) {
-            plan->places[i] = options->list[choice[i]].place;
+            plan->sites[i] = options->list[choice[i]].site;
             plan->pinned[i] = options->list[choice[i]].fixed;
         }
     }
@@ -164,7 +162,7 @@ orb_status plan_place(orb_plan *plan, const orb_ground *ground, const orb_option
 orb_descent plan_descent(orb_plan *plan, double radius) {
     for (int32_t i = 0; i < plan->n_slots; i++)
         plan->radius[i] = radius;
-    return (orb_descent){plan->n_slots, plan->slots, plan->places, plan->pinned, plan->radius, 0, false};
+    return (orb_descent){plan->n_slots, plan->slots, plan->sites, plan->pinned, plan->radius, 0, false, false};
 }
 
 /* --- the signature's sequence ------------------------------------------------------------------------------------ */
@@ -183,8 +181,8 @@ static int by_place(const void *a, const void *b) {
 static int32_t collect(const orb_plan *plan, const orb_ground *ground, int32_t loop, settled *found) {
     int32_t n = 0;
     for (int32_t i = 0; i < plan->n_slots; i++)
-        for (int32_t a = 0; a < plan->places[i].n && ground_kind_loop(plan->slots[i].kind) == loop; a++) {
-            const int32_t v = plan->places[i].vertex[a];
+        for (int32_t a = 0; a < plan->sites[i].n && ground_kind_loop(plan->slots[i].kind) == loop; a++) {
+            const int32_t v = plan->sites[i].vertex[a];
             found[n++] = (settled){v, plan->slots[i].order, ground->boundary->place[v]};
         }
     return n;
@@ -224,7 +222,7 @@ orb_status plan_list_cones(orb_plan *plan, const orb_ground *ground, const int32
         return error_memory(error);
     hand_out(collect(plan, ground, -1, found), found, s->orders, plan->cones);
     for (int32_t m = 0; m < s->n_mirrors; m++) {
-        const int32_t first = s->n_cones + s->mirror_start[m];
+        const int32_t first = s->mirror_start[m];
         hand_out_in_turn(collect(plan, ground, loop_of[m], found), found, s->orders + first, plan->cones + first);
     }
     free(found);
