@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dilation.h"
 #include "tour.h"
 
-static const double pi = 3.14159265358979323846;
-enum { LONG_WALK = 4 };
+enum { LONG_WALK = 4, LUNE_ORDER = 4 };
 
 /* Teichmueller space is a point, or the plane's, of whose lattices the least conformal energy chooses (modulus.h). */
 static bool has_conformal_tile(const orb_signature *s) {
@@ -30,13 +30,12 @@ orb_status plan_create(const char *text, orb_signature *signature, orb_plan **re
     plan->sites = malloc(room * sizeof *plan->sites);
     plan->pinned = malloc(room);
     plan->radius = malloc(room * sizeof *plan->radius);
-    plan->cones = malloc(room * sizeof *plan->cones);
+    plan->cones = calloc(room, sizeof *plan->cones);
     plan->charges = malloc(room * sizeof *plan->charges);
     if (!plan->text || !plan->slots || !plan->sites || !plan->pinned || !plan->radius || !plan->cones || !plan->charges)
         return error_memory(error);
     memcpy(plan->text, text, length);
-    for (int32_t i = 0; i < plan->n_cones; i++)
-        plan->charges[i] = (i < signature->n_cones ? 2 : 1) * pi * (1 - 1.0 / signature->orders[i]);
+    spread_charges(signature, plan->cones, plan->charges);
     plan->value = INFINITY;
     return ORB_OK;
 }
@@ -63,6 +62,15 @@ typedef struct crowd {
     double charge;
 } crowd;
 
+/* For a lune of a low order the form with a(u) = a is far off, as the dilation that is free is not in it; the best places are
+ * nearly those for a higher order, for the metric without the cones is one cylinder for all. */
+static double searched_charge(const orb_plan *plan, int32_t cone) {
+    const int32_t order = plan->signature->orders[cone];
+    if (order >= LUNE_ORDER || !dilation_is_free(plan->signature))
+        return plan->charges[cone];
+    return plan->charges[cone] * (1 - 1.0 / LUNE_ORDER) / (1 - 1.0 / order);
+}
+
 static bool corners_are_alike(const orb_signature *s, int32_t mirror) {
     for (int32_t i = s->mirror_start[mirror]; i < s->mirror_start[mirror + 1]; i++)
         if (s->orders[i] != s->orders[s->mirror_start[mirror]])
@@ -84,7 +92,7 @@ static int32_t list_crowds(const orb_plan *plan, const int32_t *loop_of, bool sy
             while (c < n && (sequence || crowds[c].order != s->orders[i]))
                 c++;
             if (c == n)
-                crowds[n++] = (crowd){m < 0 ? -1 : loop_of[m], s->orders[i], 0, 0, 0, plan->charges[i]};
+                crowds[n++] = (crowd){m < 0 ? -1 : loop_of[m], s->orders[i], 0, 0, 0, searched_charge(plan, i)};
             crowds[c].n++;
             crowds[c].most_pairs = symmetric ? crowds[c].n / 2 : 0;
         }
@@ -235,3 +243,5 @@ orb_status plan_shorten_walk(orb_plan *plan, const orb_mesh *mesh, orb_error *er
         return ORB_OK;
     return tour_shorten(mesh, plan->n_cones, plan->cones, s->orders, error);
 }
+
+orb_charges plan_charges(const orb_plan *plan) { return spread_charges(plan->signature, plan->cones, plan->charges); }

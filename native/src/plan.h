@@ -46,9 +46,6 @@ orb_status plan_list_cones(orb_plan *plan, const orb_ground *ground, const int32
 /* On a sphere, whose cut runs through the cones in turn, four or more are put into the sequence of a short walk. */
 orb_status plan_shorten_walk(orb_plan *plan, const orb_mesh *mesh, orb_error *error);
 
-static inline orb_charges plan_charges(const orb_plan *plan) {
-    const orb_signature *s = plan->signature;
-    return (orb_charges){plan->n_cones, plan->cones, plan->charges, s->curvature == 0 ? 0 : s->euler};
-}
+orb_charges plan_charges(const orb_plan *plan);
 
 #endif
