@@ -91,8 +91,7 @@ static orb_status list_signatures(orb_study *study, orb_error *error) {
     orb_status status = ORB_OK;
     if (n == 0)
         return error_set(error, ORB_WRONG_GENUS,
-                         "no signature is usual for a mesh with so many handles and holes: ask "
-                         "for one");
+                         "no signature is usual for a mesh with so many handles and holes: ask for one");
     study->plans = calloc((size_t)n, sizeof *study->plans);
     if (!study->plans)
         return error_memory(error);
@@ -101,6 +100,8 @@ static orb_status list_signatures(orb_study *study, orb_error *error) {
             status = add_plan(study, request->signatures[k], true, error);
         else if (k < usual.n_sure || study->input->n_vertices <= MOST_EMBEDDED)
             status = add_plan(study, usual.text[k], k < usual.n_sure, error);
+    if (request->n_signatures == 0 && request->flat)
+        keep_flat(study);
     return status;
 }
 
