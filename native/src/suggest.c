@@ -68,6 +68,21 @@ static orb_status add_plan(orb_study *study, const char *text, bool sure, orb_er
     return status;
 }
 
+/* Drops those of the sphere and the hyperbolic plane, if others are left. */
+static void keep_flat(orb_study *study) {
+    int32_t n_flat = 0, n = study->n;
+    for (int32_t k = 0; k < n; k++)
+        n_flat += study->plans[k]->signature->curvature == 0;
+    if (n_flat == 0)
+        return;
+    study->n = 0;
+    for (int32_t k = 0; k < n; k++)
+        if (study->plans[k]->signature->curvature == 0)
+            study->plans[study->n++] = study->plans[k];
+        else
+            plan_free(study->plans[k]);
+}
+
 static orb_status list_signatures(orb_study *study, orb_error *error) {
     const orb_suggest_request *request = study->request;
     const bool filled = request->holes == ORB_HOLES_FILL;
@@ -76,8 +91,7 @@ static orb_status list_signatures(orb_study *study, orb_error *error) {
     orb_status status = ORB_OK;
     if (n == 0)
         return error_set(error, ORB_WRONG_GENUS,
-                         "no signature is usual for a mesh with so many handles and holes: ask "
-                         "for one");
+                         "no signature is usual for a mesh with so many handles and holes: ask for one");
     study->plans = calloc((size_t)n, sizeof *study->plans);
     if (!study->plans)
         return error_memory(error);
@@ -86,6 +100,8 @@ static orb_status list_signatures(orb_study *study, orb_error *error) {
             status = add_plan(study, request->signatures[k], true, error);
         else if (k < usual.n_sure || study->input->n_vertices <= MOST_EMBEDDED)
             status = add_plan(study, usual.text[k], k < usual.n_sure, error);
+    if (request->n_signatures == 0 && request->flat)
+        keep_flat(study);
     return status;
 }
 
@@ -258,7 +274,8 @@ static orb_status run_group(group *g, int32_t n_mirrors, orb_error *error) {
         status = spread_create(g->mesh, &g->spread, error);
     if (status == ORB_OK)
         status = columns_create(g->spread, &study->monitor, &g->columns, error);
-    g->n_candidates = count_candidates(g);
+    if (status == ORB_OK)
+        g->n_candidates = count_candidates(g);
     const bool symmetric = status == ORB_OK && g->ground->reflection;
     if (symmetric) {
         status = place_plans(g, true, error);
