@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Suggest Cones, its table, unwrapping with no cones, keeping away, and the predicted stretch."""
 
+import functools
 import os
 import sys
 import tempfile
@@ -96,6 +97,13 @@ def check_picked_cones_stay_and_placed_ones_do_not():
     assert rows(obj) == kept
     bpy.ops.mesh.orbifold_suggest_cones(keep_picked=False)
     assert rows(obj) == as_rows(found_by_core(obj))
+
+
+def check_only_the_plane():
+    obj = blob()
+    bpy.ops.mesh.orbifold_suggest_cones(scope="FLAT")
+    assert rows(obj) == as_rows(found_by_core(obj, flat=True))
+    assert {core.geometry_of(signature) for signature, _ in rows(obj)} == {"euclidean"}
 
 
 def check_symmetry_can_be_ignored():
@@ -249,13 +257,13 @@ def check_unwrap_with_no_cones_takes_the_best_suggestion():
     for make in (blob, quad_blob, disk):
         for enter in (object_mode, edit_mode):
             obj = make()
-            best = found_by_core(obj)[0]
+            best = found_by_core(obj, flat=True)[0]
             enter()
             assert bpy.ops.uv.orbifold_unwrap() == {"FINISHED"} and (obj.mode == "EDIT") == (enter is edit_mode)
             object_mode()
             assert "Orbifold" in obj.data.uv_layers
             assert picked(obj) == list(zip(best.cones, best.orders)) and obj.data.orbifold.signature == best.signature
-            assert placed(obj) == 0 and rows(obj) == as_rows(found_by_core(obj))
+            assert placed(obj) == 0 and rows(obj) == as_rows(found_by_core(obj, flat=True))
             arrays = blender_mesh.read_mesh(obj.data)
             result = core.embed(arrays.vertices, arrays.triangles, best.signature, best.cones, weights="conformal")
             layout = part("faces").layout_of(result, arrays, result.chart)
@@ -280,6 +288,21 @@ def check_one_click_is_one_undo_step():
         assert enter is edit_mode or digest(obj) == before
 
 
+def check_one_click_again_gives_the_same():
+    """What the redo panel does: undo, then the operator with other settings."""
+    obj = blob()
+    bpy.ops.ed.undo_push(message="before")
+    user(bpy.ops.uv.orbifold_unwrap)
+    first = picked(bpy.context.object)
+    bpy.ops.ed.undo()
+    user(bpy.ops.uv.orbifold_unwrap, chart_euclidean="conformal", mark_seams=False)
+    assert picked(bpy.context.object) == first
+    bpy.ops.ed.undo()
+    user(bpy.ops.uv.orbifold_unwrap, flat=False)
+    obj = bpy.context.object
+    assert vertices_of(obj) == list(found_by_core(obj)[0].cones)
+
+
 def check_a_signature_that_is_typed_is_kept():
     obj = blob()
     obj.data.orbifold.signature = "632"
@@ -300,7 +323,7 @@ def check_a_single_cone_is_kept():
         bpy.ops.mesh.orbifold_add_cones()
         bpy.ops.uv.orbifold_unwrap()
         object_mode()
-        best = found_by_core(obj, signature or None, [77])[0]
+        best = found_by_core(obj, signature or None, [77], flat=True)[0]
         assert 77 in vertices_of(obj) and vertices_of(obj) == list(best.cones)
         assert obj.data.orbifold.signature == best.signature
 
@@ -354,6 +377,7 @@ def check_where_a_suggestion_fails_the_next_is_tried():
     obj = blob()
     names = [one.signature for one in found_by_core(obj)]
     before = digest(obj)
+    unwrap_any = functools.partial(bpy.ops.uv.orbifold_unwrap, flat=False)
     for statuses, tried, ends in (
         (["ORB_CERTIFICATE_FAILED"] * 2, names[:3], True),
         (["ORB_NOT_CONVERGED"] * 9, names[:5], False),
@@ -362,10 +386,10 @@ def check_where_a_suggestion_fails_the_next_is_tried():
         asked, real = failing(statuses)
         try:
             if ends:
-                assert bpy.ops.uv.orbifold_unwrap() == {"FINISHED"}
+                assert unwrap_any() == {"FINISHED"}
                 assert obj.data.orbifold.signature == names[2] and placed(obj) == 2
             else:
-                assert "did not work" in raises(bpy.ops.uv.orbifold_unwrap)
+                assert "did not work" in raises(unwrap_any)
                 assert digest(obj) == before
         finally:
             core.start_embedding = real
