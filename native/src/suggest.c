@@ -8,13 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "distortion.h"
 #include "plan.h"
 #include "surface.h"
 #include "topology.h"
 #include "usual.h"
 
 static const double most_sampled = 2.5e6; /* candidates times vertices */
-static const double promising = 0.9;      /* of the best spread so far, for a tile that is not conformal */
+/* Where many cones are worth an embedding: the best spread without them, and theirs relative to it. */
+static const double large_spread = 1, promising = 0.9;
 enum {
     FEWEST_CANDIDATES = 60,
     MOST_CANDIDATES = 120,
@@ -321,10 +323,9 @@ static bool report_part(const char *stage, double fraction, void *user) {
     return monitor_report(p->monitor, "embedding", p->from + (p->to - p->from) * fraction, NULL) == ORB_OK;
 }
 
-/* The embedding's spread; a plan whose embedding fails loses its places. */
+/* The embedding's distortion; a plan whose embedding fails loses its places. */
 static orb_status measure(orb_study *study, orb_plan *plan, part *progress, orb_error *error) {
     orb_embedding *embedding = NULL;
-    orb_report report;
     orb_request request = orb_request_default();
     request.signature = plan->text;
     request.n_cones = plan->n_cones;
@@ -337,8 +338,7 @@ static orb_status measure(orb_study *study, orb_plan *plan, part *progress, orb_
         return error_set(error, status, "%s", study->failure.message);
     plan->placed = status == ORB_OK;
     if (status == ORB_OK) {
-        orb_embedding_report(embedding, &report);
-        plan->predicted = report.log_area_std;
+        plan->predicted = distortion_spread(embedding);
         plan->measured = true;
     }
     orb_embedding_free(embedding);
@@ -353,7 +353,8 @@ static orb_status measure_plans(orb_study *study, orb_error *error) {
             best = fmin(best, study->plans[k]->predicted);
     for (int32_t k = 0; k < study->n; k++) {
         orb_plan *plan = study->plans[k];
-        plan->placed = plan->placed && (plan->conformal_tile || plan->sure || plan->conformal < promising * best);
+        const bool helps = best > large_spread && plan->conformal < promising * best;
+        plan->placed = plan->placed && (plan->conformal_tile || plan->sure || helps);
         n += plan->placed && !plan->conformal_tile;
     }
     orb_status status = ORB_OK;
