@@ -32,8 +32,8 @@ class Suggestion:
     signature: str
     cones: tuple[int, ...]  # vertices, in the signature's sequence, as `embed` takes them
     orders: tuple[int, ...]  # that sequence
-    predicted: float  # the spread of a conformal map onto the tile, or, where `measured`, the embedding's
-    conformal: float  # the spread of the conformal map with these cones, by which they were chosen
+    predicted: float  # the spread of the conformal map; where `measured`, of the embedding, distorted angles included
+    conformal: float  # the spread of a conformal map with these cones
     measured: bool  # four hyperbolic cones and more: the tile is not the conformal one, so the embedding was made
     symmetric: bool  # the cones are their own mirror image
 

@@ -195,8 +195,8 @@ def _summary(unwrapped: Unwrapped, output: Path, seconds: float) -> list[str]:
 def _suggested(suggestion: Optional[core.Suggestion]) -> list[str]:
     if suggestion is None:
         return []
-    how = "measured" if suggestion.measured else "predicted"
-    return [f"the cones were suggested: {how} area spread {suggestion.predicted:.2f}"]
+    spread = "measured spread of areas and angles" if suggestion.measured else "predicted area spread"
+    return [f"the cones were suggested: {spread} {suggestion.predicted:.2f}"]
 
 
 @contextmanager

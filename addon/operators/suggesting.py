@@ -90,7 +90,7 @@ class MESH_OT_orbifold_suggest_cones(SuggestingOperator, bpy.types.Operator):
         best = found[0]
         count = "One suggestion" if len(found) == 1 else f"{len(found)} suggestions, the best"
         return (
-            f"{count}: {best.signature} with an area spread of {best.predicted:.2f}. "
+            f"{count}: {best.signature} with a spread of {best.predicted:.2f}. "
             "Click it in the sidebar to place its cones."
         )
 
@@ -124,7 +124,7 @@ class MESH_OT_orbifold_place_suggestion(bpy.types.Operator):
         text = f"Place {'this cone' if count == 1 else f'these {count} cones'}, in place of those that the mesh has. "
         text += f"{core.describe(row.signature)}. The spread is the standard deviation of log area"
         if row.measured:
-            text += "; ~ : it was measured on this orbifold's own tile, which does not keep angles"
+            text += "; ~ : it was measured, for this orbifold's tile distorts angles, and they count too"
         return text + ("; the cones are symmetric" if row.symmetric else "")
 
     def execute(self, context: bpy.types.Context) -> set[str]:

@@ -50,8 +50,8 @@ class UV_OT_orbifold_unwrap(SuggestingOperator, UVOperator, bpy.types.Operator):
 
     flat: BoolProperty(
         name="Plane Only",
-        description="Where cones are suggested for any signature: only those of the plane, which keep angles, and over "
-        "whose tile an image repeats. Without this also those that even out areas more, but may shear a great deal",
+        description="Where cones are suggested for any signature: only those of the plane, over whose tile an image "
+        "repeats. Without this also those of the sphere and of the hyperbolic plane",
         default=True,
     )
 

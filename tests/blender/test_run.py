@@ -173,8 +173,8 @@ def test_the_best_suggestion_is_used(pear: Path, tmp_path: Path) -> None:
         report = check_files(out, "pear", best.signature, list(best.cones), suggested=True)
         assert report["suggested"]["predicted"] == pytest.approx(best.predicted, rel=1e-3)
         assert report["suggested"]["measured"] == best.measured
-        how = "measured" if best.measured else "predicted"
-        assert f"the cones were suggested: {how} area spread {best.predicted:.2f}" in done.stdout
+        spread = "measured spread of areas and angles" if best.measured else "predicted area spread"
+        assert f"the cones were suggested: {spread} {best.predicted:.2f}" in done.stdout
 
 
 def test_cones_without_a_signature_are_those_of_442(pear: Path, tmp_path: Path) -> None:
