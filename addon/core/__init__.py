@@ -6,6 +6,7 @@
 """
 
 from .binding import library
+from .defects import Defect, find_defects
 from .embed import EmbeddingJob, embed, start_embedding
 from .errors import OrbifoldError
 from .fitting import fitting_signatures
@@ -39,6 +40,7 @@ from .whole import WholeLayout, edge_keys, whole_layout
 __all__ = [
     "CHARTS",
     "DEPENDS_ON_CONES",
+    "Defect",
     "EmbeddingJob",
     "Job",
     "MeshFileError",
@@ -55,6 +57,7 @@ __all__ = [
     "describe",
     "edge_keys",
     "embed",
+    "find_defects",
     "fitting_signatures",
     "format_signature",
     "geometry_of",

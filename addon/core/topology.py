@@ -43,7 +43,7 @@ def topology_of(faces: np.ndarray, sizes: np.ndarray | None = None) -> Topology:
     count = np.diff(np.concatenate([first, [len(keys)]]))
     single, double = order[first[count == 1]], first[count == 2]
     one, other = order[double], order[double + 1]
-    components = int(len(np.unique(_components(n, corners, ends))))
+    components = int(len(np.unique(connected(n, corners, ends))))
     loops = _loops(np.stack([corners[single], ends[single]], 1))
     face = np.repeat(np.arange(len(sizes)), sizes)
     orientable = _is_orientable(len(sizes), face[one], face[other], corners[one] == corners[other])
@@ -58,11 +58,11 @@ def _is_orientable(m: int, one: np.ndarray, other: np.ndarray, turned: np.ndarra
         return True
     flip = np.where(turned, m, 0)
     start, end = np.concatenate([one, one + m]), np.concatenate([other + flip, (other + m + flip) % (2 * m)])
-    root = _components(2 * m, start, end % (2 * m))
+    root = connected(2 * m, start, end % (2 * m))
     return bool((root[:m] != root[m:]).all())
 
 
-def _components(n: int, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+def connected(n: int, start: np.ndarray, end: np.ndarray) -> np.ndarray:
     """(n,) the least node that each one is connected with. A few passes over the edges at any size: labels are hooked
     to lower ones and the paths to them shortened."""
     label = np.arange(n)
