@@ -47,15 +47,51 @@ class MeshArrays:
 
 @contextmanager
 def object_mode(obj: bpy.types.Object) -> Iterator[None]:
-    """Leave edit mode (and paint modes) for a while and come back. `obj` is the active object."""
+    """Leave edit mode (and paint modes) for a while and come back, with all objects that are in it together. `obj` need
+    not be the active one, but in the view layer where it is in another mode."""
     mode = obj.mode
-    if mode != "OBJECT":
-        bpy.ops.object.mode_set(mode="OBJECT")
+    if mode == "OBJECT":
+        yield
+        return
+    objects = bpy.context.view_layer.objects
+    active = objects.active
+    together = [other for other in objects if other.mode == mode and other.type == obj.type]
+    if active not in together:
+        objects.active = obj
+    leader = objects.active
+    bpy.ops.object.mode_set(mode="OBJECT")
     try:
         yield
     finally:
-        if obj.mode != mode:
+        if objects.active is leader:
+            _enter(mode, together)
+            objects.active = active
+        elif objects.active.mode != mode:  # a copy was made and took its place
             bpy.ops.object.mode_set(mode=mode)
+
+
+def _enter(mode: str, together: list[bpy.types.Object]) -> None:
+    """These objects, the active one among them; others that are selected stay as they are, and selected."""
+    objects = bpy.context.view_layer.objects
+    chosen = {obj: obj in together for obj in objects if (obj in together) != obj.select_get()}
+    for obj, wanted in chosen.items():
+        obj.select_set(wanted)
+    bpy.ops.object.mode_set(mode=mode)
+    for obj, wanted in chosen.items():
+        obj.select_set(not wanted)
+
+
+def edited(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """The mesh objects in edit mode, of those that share a mesh one only, the active one first; in other modes the
+    active object."""
+    active = context.view_layer.objects.active
+    if active is None or active.mode != "EDIT":
+        return [active] if active is not None and active.type == "MESH" else []
+    found = {active.data: active} if active.type == "MESH" else {}
+    for obj in context.view_layer.objects:
+        if obj.type == "MESH" and obj.mode == "EDIT":
+            found.setdefault(obj.data, obj)
+    return list(found.values())
 
 
 # -------------------------------------------------------------------------------------------------- reading

@@ -15,7 +15,7 @@ from typing import Optional
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
 
-from . import arrangement, cones, core, suggestions, surface
+from . import arrangement, checking, cones, core, suggestions, surface
 
 NEW_ORDER = 2
 HOLES = (
@@ -170,9 +170,10 @@ class OrbifoldMesh(bpy.types.PropertyGroup):
         "1 there is never one",
     )
     suggestions: PointerProperty(type=suggestions.OrbifoldSuggestions)
+    check: PointerProperty(type=checking.OrbifoldCheck)
 
 
-CLASSES = (OrbifoldCone, *suggestions.CLASSES, OrbifoldMesh)
+CLASSES = (OrbifoldCone, *suggestions.CLASSES, *checking.CLASSES, OrbifoldMesh)
 
 
 def register() -> None:

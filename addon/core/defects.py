@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is wrong with a mesh, all of it at once, with every element: the library names the first fault and sixteen
-elements of it. It stays the judge: where it refuses a mesh in which nothing is found here, what it says is a finding."""
+"""What is wrong with a mesh, all of it at once and with every element; the library names the first fault and sixteen
+elements of it. It stays the judge: where it refuses a mesh in which nothing is found here, that is a finding too."""
 
 from __future__ import annotations
 

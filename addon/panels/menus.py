@@ -69,17 +69,48 @@ def draw_entries(self, _context: bpy.types.Context) -> None:
     self.layout.operator("uv.orbifold_unwrap")
     self.layout.operator("mesh.orbifold_suggest_cones")
     self.layout.operator("mesh.orbifold_show_stretch")
+    self.layout.menu(VIEW3D_MT_orbifold.bl_idname)
 
 
+class VIEW3D_MT_orbifold(bpy.types.Menu):
+    """All operators that make sense without a row of a list: in a menu so that F3 finds them in every mode."""
+
+    bl_idname = "VIEW3D_MT_orbifold"
+    bl_label = "Orbifold"
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        layout = self.layout
+        for group in MENU_GROUPS:
+            for name in group:
+                layout.operator(name)
+            layout.separator()
+
+
+def draw_submenu(self, _context: bpy.types.Context) -> None:
+    self.layout.separator()
+    self.layout.menu(VIEW3D_MT_orbifold.bl_idname)
+
+
+MENU_GROUPS = (
+    ("uv.orbifold_unwrap", "uv.orbifold_fixed_boundary", "object.orbifold_sphere"),
+    ("mesh.orbifold_suggest_cones", "mesh.orbifold_add_cones", "mesh.orbifold_remove_cone", "mesh.orbifold_move_cone",
+     "mesh.orbifold_clear_cones", "mesh.orbifold_jump_to_cone"),
+    ("mesh.orbifold_show_stretch", "mesh.orbifold_check"),
+)
 UV_MENUS = ("VIEW3D_MT_uv_map", "IMAGE_MT_uvs")
-CLASSES = (MESH_MT_orbifold_signatures,)
+OBJECT_MENUS = ("VIEW3D_MT_object",)
+CLASSES = (MESH_MT_orbifold_signatures, VIEW3D_MT_orbifold)
 
 
 def register() -> None:
     for name in UV_MENUS:
         getattr(bpy.types, name).append(draw_entries)
+    for name in OBJECT_MENUS:
+        getattr(bpy.types, name).append(draw_submenu)
 
 
 def unregister() -> None:
     for name in UV_MENUS:
         getattr(bpy.types, name).remove(draw_entries)
+    for name in OBJECT_MENUS:
+        getattr(bpy.types, name).remove(draw_submenu)
