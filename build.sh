@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Orbifold UV: the one command.  Nothing has to be done before it: what is missing is asked of apt.
 #
-#   ./build.sh run  [MESH] [--orbifold SIGNATURE] [--cones i,j,k | --cones auto] [--orders n,n,n]
+#   ./build.sh run  [MESH ...] [--jobs LIST] [--orbifold SIGNATURE] [--cones i,j,k | --cones auto] [--orders n,n,n]
 #                   [--weights conformal|cotan|delaunay|mean-value|mean-value-exact|uniform]
-#                   [--holes refuse|fill|mirror] [--output DIR] [--blender PATH]
+#                   [--holes refuse|fill|mirror] [--output DIR] [--files ENDINGS] [--export] [--blender PATH]
 #   ./build.sh test [--blender PATH]      everything; ends with `N passed, N failed`
 #   ./build.sh native                     build the library only, into addon/core/
 #   ./build.sh package                    build/orbifold_uv-VERSION.zip, to install in Blender
@@ -119,6 +119,7 @@ run() {
     program=$(find_blender)
     log=$(mktemp "$build/run.XXXXXX")
     trap "rm -f '$log'" EXIT             # expanded now: log is local
+    [ ! -t 1 ] || export ORBIFOLD_TERMINAL=/dev/tty     # for a progress bar: below, stdout is a pipe
     "$program" --background --factory-startup --python-exit-code 1 --python "$root/addon/run.py" -- "${arguments[@]}" 2>&1 </dev/null |
         tee "$log" | show_run || status=1
     if grep -q '^orbifold error: ' "$log"; then

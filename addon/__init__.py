@@ -13,7 +13,7 @@ bl_info = {
 
 import bpy
 
-from . import handlers, operators, panels, preferences, previews, properties, surface
+from . import cli, handlers, operators, panels, preferences, previews, properties, surface
 from .panels import menus
 
 CLASSES = (*preferences.CLASSES, *operators.CLASSES, *panels.CLASSES)
@@ -25,9 +25,11 @@ def register() -> None:
         bpy.utils.register_class(cls)
     menus.register()
     handlers.register()
+    cli.register()
 
 
 def unregister() -> None:
+    cli.unregister()
     handlers.unregister()
     menus.unregister()
     previews.clear()

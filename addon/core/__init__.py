@@ -10,7 +10,7 @@ from .defects import Defect, find_defects
 from .embed import EmbeddingJob, embed, start_embedding
 from .errors import OrbifoldError
 from .fitting import fitting_signatures
-from .jobs import Job
+from .jobs import Job, Progress
 from .meshio import MeshFileError, read_mesh
 from .polygon import Polygon
 from .result import CHARTS, Result
@@ -48,6 +48,7 @@ __all__ = [
     "Outline",
     "Polygon",
     "Prediction",
+    "Progress",
     "Result",
     "Signature",
     "Suggestion",

@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Callable, Iterator, Optional
 
+import addon_utils
 import bmesh
 import bpy
 import numpy as np
@@ -29,7 +30,7 @@ def load_object(path: Path, object_name: Optional[str], read_mesh: ReadMesh) -> 
         raise RunError(f"{path}: there is no such file")
     importer = IMPORTERS.get(path.suffix.lower())
     if importer is None and path.suffix.lower() != ".off":
-        raise RunError(f"{path}: the ending is none of {' '.join(sorted([*IMPORTERS, '.off']))}")
+        raise RunError(f"{path}: the ending is none of {' '.join(MESH_ENDINGS)}")
     try:
         active = _import_off(path, read_mesh) if importer is None else importer(path)
     except (RuntimeError, ValueError, OSError) as reason:
@@ -81,9 +82,20 @@ def _keep_only(obj: bpy.types.Object) -> None:
 # ------------------------------------------------------------------------------------------------ by ending
 
 
-def _has(group: object, name: str) -> bool:
+def has_operator(group: object, name: str) -> bool:
     """Whether this Blender has the operator (bpy.ops answers hasattr with True for any name)."""
     return name in dir(group)
+
+
+def enabled_addon(module: str) -> None:
+    """Blender's own importers and exporters that are add-ons may be switched off in a person's preferences."""
+    if not addon_utils.check(module)[1]:
+        addon_utils.enable(module, default_set=False)
+
+
+def empty_file() -> None:
+    """As after a start with factory settings, without any object. Preferences stay, and with them the add-ons."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
 
 
 def _import_obj(path: Path) -> None:
@@ -91,20 +103,21 @@ def _import_obj(path: Path) -> None:
 
 
 def _import_ply(path: Path) -> None:
-    if _has(bpy.ops.wm, "ply_import"):
+    if has_operator(bpy.ops.wm, "ply_import"):
         bpy.ops.wm.ply_import(filepath=str(path), merge_verts=False)
     else:
         bpy.ops.import_mesh.ply(filepath=str(path))
 
 
 def _import_stl(path: Path) -> None:
-    if _has(bpy.ops.wm, "stl_import"):
+    if has_operator(bpy.ops.wm, "stl_import"):
         bpy.ops.wm.stl_import(filepath=str(path), use_mesh_validate=False)
     else:
         bpy.ops.import_mesh.stl(filepath=str(path))
 
 
 def _import_gltf(path: Path) -> None:
+    enabled_addon("io_scene_gltf2")
     with _numpy_bool():
         bpy.ops.import_scene.gltf(filepath=str(path), merge_vertices=True)
     for obj in bpy.data.objects:
@@ -113,6 +126,7 @@ def _import_gltf(path: Path) -> None:
 
 
 def _import_fbx(path: Path) -> None:
+    enabled_addon("io_scene_fbx")
     bpy.ops.import_scene.fbx(filepath=str(path), use_anim=False)
 
 
@@ -122,7 +136,7 @@ def _import_blend(path: Path) -> str:
     active = bpy.context.view_layer.objects.active
     name = active.name if active is not None else ""
     names = [obj.name for obj in bpy.context.scene.objects if obj.type == "MESH"]
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    empty_file()
     with bpy.data.libraries.load(str(path), link=False) as (_, wanted):
         wanted.objects = names
     return name
@@ -146,6 +160,7 @@ IMPORTERS: dict[str, Callable[[Path], Optional[str]]] = {
     ".fbx": _import_fbx,
     ".blend": _import_blend,
 }
+MESH_ENDINGS = tuple(sorted([*IMPORTERS, ".off"]))
 
 
 @contextmanager

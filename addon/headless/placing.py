@@ -21,19 +21,23 @@ class Placed:
     remarks: list[str]
 
 
-def embed_placed(arguments: Arguments, arrays: blender_mesh.MeshArrays) -> Placed:
+def embed_placed(
+    arguments: Arguments, arrays: blender_mesh.MeshArrays, progress: Optional[core.Progress] = None
+) -> Placed:
     signature = arguments.signature
     if signature is None and (arguments.cones is not None or arguments.orders is not None):
         signature = DEFAULT_SIGNATURE
     if arguments.cones is None and (signature is None or core.parse_signature(signature).orders):
-        return _embed_suggested(arguments, arrays, signature)
-    return Placed(_embed(arguments, arrays, signature, arguments.cones or (), arguments.orders), None, [])
+        return _embed_suggested(arguments, arrays, signature, progress)
+    result = _embed(arguments, arrays, signature, arguments.cones or (), arguments.orders, progress)
+    return Placed(result, None, [])
 
 
-def _embed_suggested(arguments: Arguments, arrays: blender_mesh.MeshArrays, signature: Optional[str]) -> Placed:
+def _embed_suggested(arguments: Arguments, arrays: blender_mesh.MeshArrays, signature: Optional[str],
+                     progress: Optional[core.Progress]) -> Placed:
     if signature is not None and arguments.orders is not None:
         _check_orders(signature, arguments.orders)
-    found = core.suggest_cones(arrays.vertices, arrays.triangles, signature, holes=arguments.holes)
+    found = core.suggest_cones(arrays.vertices, arrays.triangles, signature, holes=arguments.holes, progress=progress)
     failed: list[core.OrbifoldError] = []
     tried = core.worth_trying(found, arguments.weights)
     for suggestion in tried:
@@ -41,7 +45,7 @@ def _embed_suggested(arguments: Arguments, arrays: blender_mesh.MeshArrays, sign
         if arguments.orders is not None:
             cones = _in_sequence(suggestion, arguments.orders)
         try:
-            result = _embed(arguments, arrays, suggestion.signature, cones, arguments.orders)
+            result = _embed(arguments, arrays, suggestion.signature, cones, arguments.orders, progress)
         except core.OrbifoldError as error:
             if error.status not in core.DEPENDS_ON_CONES:
                 raise
@@ -52,9 +56,9 @@ def _embed_suggested(arguments: Arguments, arrays: blender_mesh.MeshArrays, sign
 
 
 def _embed(arguments: Arguments, arrays: blender_mesh.MeshArrays, signature: str, cones: tuple[int, ...],
-           orders: Optional[tuple[int, ...]]) -> core.Result:
+           orders: Optional[tuple[int, ...]], progress: Optional[core.Progress]) -> core.Result:
     return core.embed(arrays.vertices, arrays.triangles, signature, cones, orders, arguments.weights,
-                      holes=arguments.holes)
+                      progress=progress, holes=arguments.holes)
 
 
 def _check_orders(signature: str, orders: tuple[int, ...]) -> None:

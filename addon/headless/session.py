@@ -10,25 +10,25 @@ import sys
 import tempfile
 import time
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Iterator, Optional, Sequence
+from typing import Iterator, Optional
 
 import bpy
 import numpy as np
 
 from .. import blender_mesh, core, faces, materials, pattern
 from ..sphere_map import sphere_of
-from .arguments import Arguments, HelpWanted, read_arguments
+from .arguments import Arguments
 from .errors import RunError
-from .importers import load_object
+from .exporters import check_export, export_object
+from .importers import empty_file, load_object
 from .picture import Subject, render_picture
 from .placing import Placed, embed_placed
 from .sample import make_creature
 from .tiling import make_tiling
 
 EXPECTED = (RunError, core.OrbifoldError, core.MeshFileError, blender_mesh.BlenderMeshError)
-ENDINGS = ("blend", "json", "npz", "png")
 IMAGES = 120  # of the tile, at most, but for finite groups: *532 has 120
 TRIANGLES_DRAWN = 1_600_000  # of all images of the tile in the picture, where each is a mesh of its own
 
@@ -40,7 +40,7 @@ class Unwrapped:
     arrays: blender_mesh.MeshArrays
     placed: Placed
     layout: faces.FaceLayout
-    material: bpy.types.Material
+    material: Optional[bpy.types.Material]  # None: no file shows it
     remarks: list[str]  # what is not as one may expect, and why
 
     @property
@@ -57,37 +57,52 @@ class Unwrapped:
         return {**self.result.report, "suggested": {name: getattr(suggestion, name) for name in kept}}
 
 
-def run(words: Sequence[str]) -> list[str]:
+def run(arguments: Arguments) -> list[str]:
     """What to tell the user. Raises one of EXPECTED, or finds a fault of ours."""
     started = time.perf_counter()
-    try:
-        arguments = read_arguments(words)
-    except HelpWanted as text:
-        return str(text).splitlines()
+    unwrapped = run_one(arguments)
+    return _summary(unwrapped, arguments, time.perf_counter() - started)
+
+
+def run_one(arguments: Arguments, progress: Optional[core.Progress] = None) -> Unwrapped:
+    """The files are there when this returns; otherwise none of them, and one of EXPECTED is raised."""
     if arguments.signature is not None:
         core.parse_signature(arguments.signature)  # before the mesh is read, which can take long
-    with _quiet():
-        unwrapped = _unwrap(arguments)
-        _write_files(unwrapped, arguments.output)
-    return _summary(unwrapped, arguments.output, time.perf_counter() - started)
+    if arguments.export:
+        check_export(arguments.mesh, arguments.output)
+        if arguments.mesh.suffix.lower() == ".blend" and "blend" not in arguments.files:
+            arguments = replace(arguments, files=("blend", *arguments.files))
+    with quiet():
+        unwrapped = _unwrap(arguments, progress)
+        _write_files(unwrapped, arguments)
+    return unwrapped
 
 
 def one_line(reason: BaseException) -> str:
     return " ".join(str(reason).split()) or type(reason).__name__
 
 
+def fault(reason: BaseException) -> str:
+    """A fault of ours, with its place."""
+    trace = reason.__traceback__
+    while trace.tb_next is not None:
+        trace = trace.tb_next
+    where = f"{Path(trace.tb_frame.f_code.co_filename).name}:{trace.tb_lineno}"
+    return f"internal fault in {where}: {type(reason).__name__}: {one_line(reason)}"
+
+
 # --------------------------------------------------------------------------------------------------- the work
 
 
-def _unwrap(arguments: Arguments) -> Unwrapped:
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+def _unwrap(arguments: Arguments, progress: Optional[core.Progress]) -> Unwrapped:
+    empty_file()
     if arguments.mesh is None:
         name, obj = "creature", make_creature()
     else:
         name = arguments.mesh.stem
         obj = load_object(arguments.mesh.resolve(), arguments.object_name, core.read_mesh)
     arrays = blender_mesh.read_mesh(obj.data)
-    placed = embed_placed(arguments, arrays)
+    placed = embed_placed(arguments, arrays, progress)
     result = placed.result
     if not result.report["certificate"]["bijective"]:
         raise RunError("the result is not certified to be a bijection")
@@ -95,7 +110,9 @@ def _unwrap(arguments: Arguments) -> Unwrapped:
     remarks = placed.remarks + faces.remarks(result, layout)
     if result.geometry == "spherical":
         remarks += _write_sphere(obj, arrays, result)
-    return Unwrapped(name, obj, arrays, placed, layout, _dress(obj, arrays, result, layout), remarks)
+    shown = bool({"blend", "png"} & set(arguments.files))
+    material = _dress(obj, arrays, result, layout, shown)
+    return Unwrapped(name, obj, arrays, placed, layout, material, remarks)
 
 
 def _write_sphere(obj: bpy.types.Object, arrays: blender_mesh.MeshArrays, result: core.Result) -> list[str]:
@@ -107,33 +124,42 @@ def _write_sphere(obj: bpy.types.Object, arrays: blender_mesh.MeshArrays, result
     return []
 
 
-def _dress(obj: bpy.types.Object, arrays: blender_mesh.MeshArrays, result: core.Result,
-           layout: faces.FaceLayout) -> bpy.types.Material:
-    """UV map, seams and the one material on the object."""
+def _dress(obj: bpy.types.Object, arrays: blender_mesh.MeshArrays, result: core.Result, layout: faces.FaceLayout,
+           shown: bool) -> Optional[bpy.types.Material]:
+    """UV map and seams on the object and, where it is to be shown, the one material."""
     mesh = obj.data
     blender_mesh.write_uv(mesh, arrays, layout.uv)
     blender_mesh.mark_seams(mesh, layout.seams)
-    material = materials.make_material(obj, result, layout)
-    mesh.materials.clear()
-    materials.assign(obj, material)
+    material = None
+    if shown:
+        material = materials.make_material(obj, result, layout)
+        mesh.materials.clear()
+        materials.assign(obj, material)
     smooth = result.report["mesh"]["orientable"]  # elsewhere normals of faces that lie on their backs would mix
     mesh.polygons.foreach_set("use_smooth", np.full(len(mesh.polygons), smooth))
     mesh.update()
     return material
 
 
-def _write_files(unwrapped: Unwrapped, output: Path) -> None:
-    """All four files into a folder beside their places, then moved there."""
+def _write_files(unwrapped: Unwrapped, arguments: Arguments) -> None:
+    """All files into a folder beside their places, then moved there."""
+    output, wanted = arguments.output, arguments.files
     with _folder_for(output) as part:
-        stem = part / unwrapped.name
+        places = {ending: part / f"{unwrapped.name}.{ending}" for ending in wanted}
         _show_material()
-        bpy.ops.wm.save_as_mainfile(filepath=str(stem.with_name(f"{stem.name}.blend")), copy=True, compress=True)
-        report = json.dumps(unwrapped.report, indent=2, allow_nan=False)
-        stem.with_name(f"{stem.name}.json").write_text(report + "\n", encoding="utf-8")
-        unwrapped.result.save(stem.with_name(f"{stem.name}.npz"))
-        render_picture(_subject(unwrapped), stem.with_name(f"{stem.name}.png"))
-        for ending in ENDINGS:
-            os.replace(part / f"{unwrapped.name}.{ending}", output / f"{unwrapped.name}.{ending}")
+        if "blend" in wanted:
+            bpy.ops.wm.save_as_mainfile(filepath=str(places["blend"]), copy=True, compress=True)
+        if "json" in wanted:
+            report = json.dumps(unwrapped.report, indent=2, allow_nan=False)
+            places["json"].write_text(report + "\n", encoding="utf-8")
+        if "npz" in wanted:
+            unwrapped.result.save(places["npz"])
+        if arguments.export and arguments.mesh.suffix.lower() != ".blend":
+            export_object(unwrapped.obj, part / arguments.mesh.name)
+        if "png" in wanted:
+            render_picture(_subject(unwrapped), places["png"])
+        for path in sorted(part.iterdir()):
+            os.replace(path, output / path.name)
 
 
 @contextmanager
@@ -177,10 +203,13 @@ def _show_material() -> None:
                 area.spaces.active.shading.type = "MATERIAL"
 
 
-def _summary(unwrapped: Unwrapped, output: Path, seconds: float) -> list[str]:
+def _summary(unwrapped: Unwrapped, arguments: Arguments, seconds: float) -> list[str]:
     report = unwrapped.result.report
     cones = ", ".join(str(cone["vertex"]) for cone in report["orbifold"]["cones"]) or "none"
-    files = ", ".join(str(output / f"{unwrapped.name}.{ending}") for ending in ENDINGS)
+    names = [f"{unwrapped.name}.{ending}" for ending in arguments.files]
+    if arguments.export and arguments.mesh.name not in names:
+        names.append(arguments.mesh.name)
+    files = ", ".join(str(arguments.output / name) for name in names) or "nothing"
     return [
         f"{unwrapped.name}: {report['mesh']['vertices']} vertices onto {report['orbifold']['signature']} "
         f"({report['orbifold']['geometry']}), cones {cones}",
@@ -200,7 +229,7 @@ def _suggested(suggestion: Optional[core.Suggestion]) -> list[str]:
 
 
 @contextmanager
-def _quiet() -> Iterator[None]:
+def quiet() -> Iterator[None]:
     """Keeps Blender's own chatter (imports, saves, render lines), some of it written by C code, off both streams."""
     sys.stdout.flush()
     sys.stderr.flush()

@@ -49,8 +49,8 @@ class MESH_OT_orbifold_check(CheckOperator, bpy.types.Operator):
     bl_label = "Check Mesh"
     bl_description = (
         "Count what stands in the way of unwrapping, and select all of it: non-manifold edges and vertices, flipped, "
-        "repeated and zero-area faces, borders, components, isolated vertices. The sidebar lists it, with a mend for each "
-        "kind"
+        "repeated and zero-area faces, borders, components, isolated vertices. The sidebar lists it, with a mend for "
+        "each kind"
     )
     needs_rows = False
 

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Many meshes in one Blender, one after the other: those that fail are listed, and do not stop the others."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Optional
+
+from .arguments import Arguments, Request
+from .errors import RunError
+from .importers import MESH_ENDINGS
+from .joblist import jobs_of
+from .progress import Progress, terminal
+from .session import EXPECTED, fault, one_line, run_one
+
+HEADINGS = ("mesh", "signature", "cones", "flipped", "mean quasi-conformal", "area spread", "seconds")
+NUMBERS = ("flipped", "mean quasi-conformal", "area spread", "seconds")  # aligned to the right
+CONES_SHOWN = 4
+
+
+@dataclass(frozen=True)
+class Row:
+    """Of the table."""
+
+    mesh: str
+    seconds: float
+    report: Optional[dict]  # None: failed
+    error: str = ""
+
+    def cells(self) -> tuple[str, ...]:
+        certificate, distortion = self.report["certificate"], self.report["distortion"]
+        cones = [str(cone["vertex"]) for cone in self.report["orbifold"]["cones"]]
+        more = f" ... ({len(cones)})" if len(cones) > CONES_SHOWN else ""
+        return (
+            self.mesh, self.report["orbifold"]["signature"], " ".join(cones[:CONES_SHOWN]) + more or "none",
+            str(certificate["flipped"]), f"{distortion['quasi_conformal_mean']:.3f}",
+            f"{distortion['log_area_std']:.2f}", f"{self.seconds:.1f}",
+        )
+
+
+@dataclass(frozen=True)
+class Batch:
+    rows: list[Row]
+
+    @property
+    def failed(self) -> list[Row]:
+        return [row for row in self.rows if row.report is None]
+
+    def table(self) -> list[str]:
+        """Lines; errors take the place of all columns but the first."""
+        done = [row.cells() for row in self.rows if row.report is not None]
+        widths = [max(map(len, column)) for column in zip(HEADINGS, *done)]
+        widths[0] = max(widths[0], *(len(row.mesh) for row in self.rows))
+        lines = [_line(HEADINGS, widths), "  ".join("-" * width for width in widths)]
+        for row in self.rows:
+            if row.report is not None:
+                lines.append(_line(row.cells(), widths))
+            else:
+                lines.append(f"{row.mesh:{widths[0]}}  failed: {row.error}")
+        total = sum(row.seconds for row in self.rows)
+        lines.append(f"{len(self.rows) - len(self.failed)} of {len(self.rows)} meshes done in {total:.1f} s")
+        return lines
+
+    def complaint(self) -> str:
+        """What failed, in one line; empty: nothing."""
+        if not self.failed:
+            return ""
+        named = "; ".join(f"{row.mesh} ({row.error})" for row in self.failed)
+        return f"{len(self.failed)} of {len(self.rows)} meshes failed: {named}"
+
+
+def run_batch(request: Request) -> Batch:
+    """RunError where there is nothing to be done at all."""
+    jobs = jobs_of(request, MESH_ENDINGS)
+    progress = Progress(len(jobs), terminal())
+    rows = []
+    try:
+        for job in jobs:
+            rows.append(_run_job(job, progress))
+    finally:
+        progress.close()
+    return Batch(rows)
+
+
+def _run_job(job: Arguments | tuple[Path, RunError], progress: Progress) -> Row:
+    started = time.perf_counter()
+    report, error = None, ""
+    mesh = job.mesh if isinstance(job, Arguments) else job[0]
+    progress.begin(mesh.name)
+    try:
+        if not isinstance(job, Arguments):
+            raise job[1]
+        report = run_one(job, progress.stage).report
+    except EXPECTED as reason:
+        error = one_line(reason)
+    except Exception as reason:  # a fault of ours with one mesh is no reason to leave out the others
+        error = fault(reason)
+    error = error.removeprefix(f"{mesh}: ").removeprefix(f"{mesh.resolve()}: ")
+    row = Row(mesh.name, time.perf_counter() - started, report, error)
+    if report is None:
+        progress.end(f"{row.mesh}: failed: {error}", True)
+    else:
+        _, signature, cones, flipped, mean, spread, seconds = row.cells()
+        progress.end(f"{row.mesh}: {signature}, cones {cones}, {flipped} flipped, mean quasi-conformal error {mean}, "
+                     f"area spread {spread}, {seconds} s", False)
+    return row
+
+
+def _line(cells: Sequence[str], widths: Sequence[int]) -> str:
+    aligned = (f"{cell:>{width}}" if name in NUMBERS else f"{cell:{width}}"
+               for name, cell, width in zip(HEADINGS, cells, widths))
+    return "  ".join(aligned).rstrip()

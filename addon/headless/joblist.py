@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Which meshes a batch is to do, each with its own arguments: from files, folders and lists of jobs."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Union
+
+from .arguments import OPTIONS, Arguments, Request
+from .errors import RunError
+
+COLUMNS = ("mesh", *OPTIONS)
+
+
+def jobs_of(request: Request, endings: Sequence[str]) -> list[Union[Arguments, tuple[Path, RunError]]]:
+    """In the sequence of the command line, the list last; for a row that cannot be read its mesh and the reason.
+    `endings` are those of mesh files, which are looked for in folders."""
+    jobs: list[Union[Arguments, tuple[Path, RunError]]] = []
+    for mesh in request.meshes:
+        files = _meshes_in(mesh, endings) if mesh.is_dir() else [mesh]
+        jobs += [replace(request.arguments, mesh=file) for file in files]
+    if request.jobs is not None:
+        jobs += [_job(request.arguments, row, request.jobs.parent) for row in read_rows(request.jobs)]
+    if not jobs:
+        raise RunError(f"{request.jobs}: there is no job in the list")
+    return _without_clashes(jobs)
+
+
+def _meshes_in(folder: Path, endings: Sequence[str]) -> list[Path]:
+    found = sorted(path for path in folder.iterdir() if path.suffix.lower() in endings and path.is_file())
+    if not found:
+        raise RunError(f"{folder}: no mesh file in this folder ({' '.join(endings)})")
+    return found
+
+
+def read_rows(path: Path) -> list[dict[str, str]]:
+    """The rows of a list, what is empty left out."""
+    readers = {".csv": _read_csv, ".json": _read_json}
+    if path.suffix.lower() not in readers:
+        raise RunError(f"{path}: a list of jobs is a .csv or a .json file")
+    try:
+        rows = readers[path.suffix.lower()](path.read_text(encoding="utf-8-sig"))
+    except OSError as reason:
+        raise RunError(f"{path}: cannot be read ({reason.strerror})") from reason
+    except (ValueError, csv.Error) as reason:
+        raise RunError(f"{path}: cannot be read ({reason})") from reason
+    for number, row in enumerate(rows, start=1):
+        unknown = [str(name) for name in row if name not in COLUMNS]
+        if unknown:
+            raise RunError(f"{path}: there is no column {unknown[0]}; there are {', '.join(COLUMNS)}")
+        if not row.get("mesh"):
+            raise RunError(f"{path}: job {number} names no mesh")
+    return rows
+
+
+def _read_csv(text: str) -> list[dict[str, str]]:
+    rows = []
+    for row in csv.DictReader(text.splitlines(), skipinitialspace=True, restkey="(more cells than columns)"):
+        cells = {(name or "").strip(): cell for name, cell in row.items()}
+        rows.append({name: cell.strip() if isinstance(cell, str) else "" for name, cell in cells.items()
+                     if not isinstance(cell, str) or cell.strip()})
+    return [{name: cell for name, cell in row.items() if cell or name not in COLUMNS} for row in rows if row]
+
+
+def _read_json(text: str) -> list[dict[str, str]]:
+    read = json.loads(text)
+    if not isinstance(read, list) or not all(isinstance(row, dict) for row in read):
+        raise ValueError("it is no list of objects, such as [{\"mesh\": \"cow.obj\"}]")
+    return [{name: _as_text(value) for name, value in row.items() if value is not None} for row in read]
+
+
+def _as_text(value: object) -> str:
+    if isinstance(value, list):
+        return ",".join(map(_as_text, value))
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _job(base: Arguments, row: dict[str, str], folder: Path) -> Union[Arguments, tuple[Path, RunError]]:
+    mesh = folder / row["mesh"]
+    values = {name: text for name, text in row.items() if text}
+    for name in ("cones", "orders"):  # numbers with spaces between them need no quotes in a .csv
+        if name in values:
+            values[name] = ",".join(values[name].replace(",", " ").split())
+    try:
+        job = base.with_values(values)
+    except RunError as reason:
+        return mesh, reason
+    output = folder / job.output if "output" in values else job.output
+    return replace(job, mesh=mesh, output=output)
+
+
+def _without_clashes(
+    jobs: Sequence[Union[Arguments, tuple[Path, RunError]]]
+) -> list[Union[Arguments, tuple[Path, RunError]]]:
+    """Of jobs that would write the same files only the first is done, and none that would write over its mesh."""
+    taken: dict[Path, Path] = {}
+    checked: list[Union[Arguments, tuple[Path, RunError]]] = []
+    for job in jobs:
+        if isinstance(job, Arguments):
+            place = job.output.resolve() / job.mesh.stem
+            first = taken.setdefault(place, job.mesh)
+            reason = ""
+            if first is not job.mesh:
+                reason = f"{first} writes the same files; give the two different outputs"
+            elif "blend" in job.files and place.with_name(f"{place.name}.blend") == job.mesh.resolve():
+                reason = "its result would be written over it; choose another folder with --output"
+            if reason:
+                job = (job.mesh, RunError(f"{job.mesh}: {reason}"))
+        checked.append(job)
+    return checked
