@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Orbifold UV for Blender: registration, nothing else. Where to read next: operators/unwrap.py."""
+"""Orbifold UV for Blender: registration, and the names of api.py for scripts. Where to read next: unwrapping.py."""
 
 bl_info = {
     "name": "Orbifold UV",
@@ -14,7 +14,10 @@ bl_info = {
 import bpy
 
 from . import cli, handlers, operators, panels, preferences, previews, properties, surface
+from .api import OrbifoldError, check, sphere, suggest, unwrap
 from .panels import menus
+
+__all__ = ["OrbifoldError", "check", "sphere", "suggest", "unwrap"]
 
 CLASSES = (*preferences.CLASSES, *operators.CLASSES, *panels.CLASSES)
 

@@ -98,7 +98,9 @@ def edited(context: bpy.types.Context) -> list[bpy.types.Object]:
 
 
 def read_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
-    """(n, 3) float64."""
+    """(n, 3) float64; with shape keys, of the one that the others are relative to."""
+    if mesh.shape_keys is not None:
+        return _key_points(mesh.shape_keys.reference_key, len(mesh.vertices)).astype(np.float64)
     coordinates = np.empty(len(mesh.vertices) * 3, np.float32)
     position = mesh.attributes.get("position")
     if position is not None and len(position.data) == len(mesh.vertices):
@@ -176,14 +178,16 @@ def _triangle_loops(mesh: bpy.types.Mesh, n_loops: int, n_polygons: int) -> tupl
 # -------------------------------------------------------------------------------------------------- writing
 
 
-def write_uv(mesh: bpy.types.Mesh, arrays: MeshArrays, uv: np.ndarray, name: str = UV_MAP) -> None:
+def write_uv(
+    mesh: bpy.types.Mesh, arrays: MeshArrays, uv: np.ndarray, name: str = UV_MAP, keep_others: bool = False
+) -> None:
     """`uv` (m, 3, 2) per triangle corner -> the UV map `name`, created or replaced, and made the active one.
 
-    The triangles of one face must agree at the corners that they share (faces.py sees to it).
+    `keep_others`: corners of other triangles keep what they have in this map, or where it is new, in the active one. The triangles of one face must agree at the corners that they share (faces.py sees to it).
     """
-    corners = np.zeros((arrays.n_loops, 2), np.float32)
+    layer = _uv_layer(mesh, name, keep_others)
+    corners = read_uv(mesh, name) if keep_others else np.zeros((arrays.n_loops, 2), np.float32)
     corners[arrays.loops.ravel()] = uv.reshape(-1, 2)
-    layer = _uv_layer(mesh, name)
     if hasattr(layer, "uv"):
         layer.uv.foreach_set("vector", corners.ravel())
     else:
@@ -202,10 +206,10 @@ def check_uv_space(mesh: bpy.types.Mesh, name: str = UV_MAP) -> None:
         raise BlenderMeshError(f'The mesh has an attribute "{name}" that is not a UV map: rename it')
 
 
-def _uv_layer(mesh: bpy.types.Mesh, name: str):
+def _uv_layer(mesh: bpy.types.Mesh, name: str, as_active: bool = False):
     check_uv_space(mesh, name)
     if name not in mesh.uv_layers:
-        mesh.uv_layers.new(name=name, do_init=False)
+        mesh.uv_layers.new(name=name, do_init=as_active)
     return mesh.uv_layers[name]
 
 
@@ -246,10 +250,10 @@ def read_seams(mesh: bpy.types.Mesh) -> np.ndarray:
     return seams
 
 
-def mark_seams(mesh: bpy.types.Mesh, pairs: Optional[np.ndarray]) -> None:
-    """Make the edges between these pairs of vertices seams, and take back those of an earlier call; the user's own
-    seams stay. None only takes back."""
-    seams = read_seams(mesh)
+def mark_seams(mesh: bpy.types.Mesh, pairs: Optional[np.ndarray], among: Optional[np.ndarray] = None) -> None:
+    """Make the edges between these pairs of vertices seams, and take back those of an earlier call, all of them or those
+    between the vertices `among`; the user's own seams stay. None only takes back."""
+    seams, kept = read_seams(mesh), np.zeros(len(mesh.edges), bool)
     old = mesh.attributes.get(CUT_ATTRIBUTE)
     if old is not None and (old.domain != "EDGE" or old.data_type != "BOOLEAN"):
         mesh.attributes.remove(old)
@@ -257,6 +261,11 @@ def mark_seams(mesh: bpy.types.Mesh, pairs: Optional[np.ndarray]) -> None:
     if old is not None:
         ours = np.empty(len(mesh.edges), bool)
         old.data.foreach_get("value", ours)
+        if among is not None:
+            inside = np.zeros(len(mesh.vertices), bool)
+            inside[among] = True
+            kept = ours & ~inside[read_edges(mesh)].all(1)
+            ours &= ~kept
         seams &= ~ours
     cut = np.zeros(len(mesh.edges), bool)
     if pairs is not None and len(pairs):
@@ -264,7 +273,7 @@ def mark_seams(mesh: bpy.types.Mesh, pairs: Optional[np.ndarray]) -> None:
         cut[found[found >= 0]] = True
     mesh.edges.foreach_set("use_seam", seams | cut)
     attribute = mesh.attributes.get(CUT_ATTRIBUTE) or mesh.attributes.new(CUT_ATTRIBUTE, "BOOLEAN", "EDGE")
-    attribute.data.foreach_set("value", cut & ~seams)
+    attribute.data.foreach_set("value", (cut & ~seams) | kept)
     mesh.update()
 
 
@@ -303,8 +312,11 @@ def write_shape_key(obj: bpy.types.Object, positions: np.ndarray, name: str = SH
 
 def read_shape_key(obj: bpy.types.Object, name: str = SHAPE_KEY) -> np.ndarray:
     """(n, 3) float32."""
-    key = obj.data.shape_keys.key_blocks[name]
-    flat = np.empty(len(obj.data.vertices) * 3, np.float32)
+    return _key_points(obj.data.shape_keys.key_blocks[name], len(obj.data.vertices))
+
+
+def _key_points(key: bpy.types.ShapeKey, n: int) -> np.ndarray:
+    flat = np.empty(n * 3, np.float32)
     (key.points if hasattr(key, "points") else key.data).foreach_get("co", flat)
     return flat.reshape(-1, 3)
 

@@ -18,13 +18,14 @@ SMALL_LAYOUT = 0.6  # of the unit square; below it, as in the middle of the hype
 
 
 def make_material(
-    obj: bpy.types.Object, result: Result, layout: Optional[FaceLayout] = None, size: Optional[int] = None
+    obj: bpy.types.Object, result: Result, layout: Optional[FaceLayout] = None, size: Optional[int] = None,
+    name_ending: str = "",
 ) -> bpy.types.Material:
     """A material for the layout that was written to the object (None: `result.uv` as it is), its image packed into
     the file. An earlier one of this object is replaced."""
     if layout is None:
         layout = plain_layout(result)
-    name = f"Orbifold {obj.name}"
+    name = f"Orbifold {obj.name}{name_ending}"
     extent = np.ptp(layout.uv.reshape(-1, 2), axis=0).max()
     size = size or (IMAGE_SIZE if extent > SMALL_LAYOUT else 2 * IMAGE_SIZE)
     material = bpy.data.materials.get(name) or bpy.data.materials.new(name)
@@ -45,14 +46,18 @@ def make_material(
     return material
 
 
-def assign(obj: bpy.types.Object, material: bpy.types.Material) -> None:
-    """Show the material on the whole object; its other materials stay in their slots."""
+def assign(obj: bpy.types.Object, material: bpy.types.Material, faces: Optional[np.ndarray] = None) -> None:
+    """Show the material on the whole object, or on these faces; its other materials stay in their slots."""
     materials = obj.data.materials
     if materials.find(material.name) < 0:
         materials.append(material)
     slot = materials.find(material.name)
     polygons = obj.data.polygons
-    polygons.foreach_set("material_index", np.full(len(polygons), slot, np.int32))
+    slots = np.full(len(polygons), slot, np.int32)
+    if faces is not None:
+        polygons.foreach_get("material_index", slots)
+        slots[faces] = slot
+    polygons.foreach_set("material_index", slots)
     obj.active_material_index = slot
     obj.data.update()
 

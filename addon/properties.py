@@ -38,7 +38,9 @@ def read_signature(text: str) -> Optional[core.Signature]:
 def arranged(mesh: bpy.types.Mesh, vertices: Sequence[int], anew: bool = False) -> arrangement.Arrangement:
     """These vertices in a signature's sequence. Borders without corners are mirrors where the mesh's signature, or the
     choice for holes, says so."""
-    seen, settings = surface.read(mesh) if anew else surface.glance(mesh), mesh.orbifold
+    if anew:
+        surface.read(mesh)
+    seen, settings = surface.around(mesh, vertices), mesh.orbifold
     typed = read_signature(settings.signature)
     all_mirrors = settings.holes == "mirror" or (typed is not None and typed.n_mirrors == len(seen.loops))
     return arrangement.arrange(vertices, seen, all_mirrors)

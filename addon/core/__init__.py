@@ -10,7 +10,7 @@ from .defects import Defect, find_defects
 from .embed import EmbeddingJob, embed, start_embedding
 from .errors import OrbifoldError
 from .fitting import fitting_signatures
-from .jobs import Job, Progress
+from .jobs import Job, Progress, wait_for, wait_until_over
 from .meshio import MeshFileError, read_mesh
 from .polygon import Polygon
 from .result import CHARTS, Result
@@ -34,7 +34,7 @@ from .suggest import (
     suggest_cones,
     worth_trying,
 )
-from .topology import Topology, topology_of
+from .topology import Topology, topology_of, vertex_components
 from .whole import WholeLayout, edge_keys, whole_layout
 
 __all__ = [
@@ -72,6 +72,9 @@ __all__ = [
     "surface_name",
     "tile_outline",
     "topology_of",
+    "vertex_components",
+    "wait_for",
+    "wait_until_over",
     "whole_layout",
     "worth_trying",
 ]

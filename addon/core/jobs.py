@@ -36,6 +36,12 @@ class Job(Generic[Made]):
 
 def wait_for(job: Job[Made], progress: Progress | None) -> Made:
     """Polls every few milliseconds and tells `progress`, which cancels by returning False or raising."""
+    wait_until_over(job, progress)
+    return job.finish()
+
+
+def wait_until_over(job: Job[Made], progress: Progress | None) -> None:
+    """As `wait_for`, but whoever calls has to finish the job, which raises ORB_CANCELLED where `progress` said False."""
     pause = 0.001
     try:
         over = False
@@ -52,4 +58,3 @@ def wait_for(job: Job[Made], progress: Progress | None) -> Made:
         with contextlib.suppress(OrbifoldError):
             job.finish()
         raise
-    return job.finish()

@@ -51,6 +51,12 @@ def topology_of(faces: np.ndarray, sizes: np.ndarray | None = None) -> Topology:
     return Topology(n - len(first) + len(sizes), components, named, orientable)
 
 
+def vertex_components(n: int, triangles: np.ndarray) -> np.ndarray:
+    """(n,) the least vertex of the component that each one belongs to; an isolated vertex is one of its own."""
+    start = triangles.ravel().astype(np.int64)
+    return connected(n, start, np.roll(triangles, -1, axis=1).ravel().astype(np.int64))
+
+
 def _is_orientable(m: int, one: np.ndarray, other: np.ndarray, turned: np.ndarray) -> bool:
     """Faces `one` and `other` (e,) share an edge that both run through the same way where `turned` (e,). Orientable:
     no face is connected with its own back."""

@@ -28,9 +28,10 @@ def mesh_problem(context: bpy.types.Context, modes: tuple[str, ...] = ("EDIT", "
     return None
 
 
-def select_culprits(context: bpy.types.Context, arrays: blender_mesh.MeshArrays, error: core.OrbifoldError) -> bool:
+def select_culprits(
+    context: bpy.types.Context, obj: bpy.types.Object, arrays: blender_mesh.MeshArrays, error: core.OrbifoldError
+) -> bool:
     """Select the elements that the error names, and only them, so that edit mode shows them. False: it names none."""
-    obj = context.active_object
     if error.element not in ("vertex", "edge", "triangle") or not error.elements:
         return False
     nothing = np.zeros(0, np.int64)
@@ -64,7 +65,7 @@ def report_failure(
         if error.status == "ORB_CANCELLED":
             operator.report({"INFO"}, "Orbifold: cancelled, nothing was changed.")
             return
-        if select_culprits(context, arrays, error) and context.active_object.mode != "EDIT":
+        if select_culprits(context, context.active_object, arrays, error) and context.active_object.mode != "EDIT":
             sentence += "; edit mode shows it selected"
     operator.report({"ERROR"}, f"{sentence[:1].upper()}{sentence[1:]}.")
 

@@ -1,50 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Orbifold Unwrap: cones and signature -> the UV map `Orbifold`. Cones that are missing are suggested first."""
+"""Orbifold Unwrap: cones and signature -> the UV map `Orbifold`, of every object in edit mode. What happens to one of
+them is in unwrapping.py; cones that are missing are suggested there."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Optional, Union
+from typing import Optional
 
 import bpy
 from bpy.props import BoolProperty
 
-from .. import cones, core, properties, suggestions
-from .suggesting import SuggestingOperator
+from .. import blender_mesh, core
+from ..unwrapping import EXPECTED, Settings, Unwrapping, warnings
+from .jobs import JobOperator, report_failure, select_culprits
 from .writing import UVOperator
 
-
-@dataclass(frozen=True)
-class Missing:
-    """What to suggest before a mesh can be unwrapped."""
-
-    signature: Optional[str]  # None: any that is usual for the mesh
-    fixed: list[int]  # vertices
+GEOMETRIES = ("euclidean", "spherical", "hyperbolic")
 
 
-def missing_cones(mesh: bpy.types.Mesh, typed: str, surface: core.Topology, holes: str) -> Optional[Missing]:
-    """None: the cones are complete, or they do not fit what is typed, which is for the person to mend. A single cone is
-    a beginning: it is kept."""
-    picked = cones.read_cones(mesh)
-    vertices = [cone.vertex for cone in picked]
-    if len(picked) > 1:
-        return None
-    own = properties.arranged(mesh, vertices).text([cone.order for cone in picked])
-    if typed and not (picked and typed == own):  # "2" is what a single cone writes by itself
-        read = properties.read_signature(typed)
-        return Missing(typed, vertices) if read is not None and len(read.orders) > len(picked) else None
-    read = properties.read_signature(own if picked else properties.default_signature(mesh))
-    whole = read is not None and len(read.orders) == len(picked)
-    return None if whole and not (holes == "fill" and surface.loops) else Missing(None, vertices)
-
-
-class UV_OT_orbifold_unwrap(SuggestingOperator, UVOperator, bpy.types.Operator):
+class UV_OT_orbifold_unwrap(UVOperator, bpy.types.Operator):
     bl_idname = "uv.orbifold_unwrap"
     bl_label = "Orbifold Unwrap"
     bl_description = (
         "Map the whole mesh one to one onto the orbifold of its cones, into the UV map Orbifold, which is created or "
         "replaced; other UV maps stay as they are. Where no cone is picked, the best ones are placed first; a single "
-        "cone is kept, and the others are placed around it"
+        "cone is kept, and the others are placed around it. Of a mesh in several components those that have cones are "
+        "unwrapped, each by itself"
     )
     bl_options = {"REGISTER", "UNDO"}
 
@@ -59,8 +39,7 @@ class UV_OT_orbifold_unwrap(SuggestingOperator, UVOperator, bpy.types.Operator):
         layout = self.layout
         layout.use_property_split = True
         layout.prop(self, "signature")
-        missing = getattr(self, "_missing", None)
-        if missing is not None and missing.signature is None:
+        if getattr(self, "_searched", False):
             layout.prop(self, "flat")
         if getattr(self, "_extra_borders", 0) > 0 or self.holes not in ("mesh", "refuse"):
             layout.prop(self, "holes")
@@ -70,57 +49,108 @@ class UV_OT_orbifold_unwrap(SuggestingOperator, UVOperator, bpy.types.Operator):
         row.prop(self, "clamp")
         self.draw_writing(_geometry(self.signature))
 
-    def prepare(self, context: bpy.types.Context) -> None:
-        UVOperator.prepare(self, context)
-        mesh = context.active_object.data
-        self._suggested: list[core.Suggestion] = []
-        self._failed: list[core.OrbifoldError] = []
-        typed = self.signature or mesh.orbifold.signature
-        self._missing = missing_cones(mesh, typed, self._surface, self.holes_of(mesh))
-        if self._missing is not None:
-            SuggestingOperator.prepare(self, context)
+    # ------------------------------------------------------------- the stages, of all objects instead of one
 
-    def start(self, context: bpy.types.Context) -> core.Job:
-        if self._missing is None:
-            return super().start(context)
-        holes = self.holes_of(context.active_object.data)
-        return self.suggesting(self._missing.signature, self._missing.fixed, holes, flat=self.flat)
+    def settings_of(self, mesh: bpy.types.Mesh) -> Settings:
+        charts = {geometry: getattr(self, f"chart_{geometry}") for geometry in GEOMETRIES}
+        return Settings(
+            signature=self.signature, weights=self.weights, clamp=self.clamp, holes=self.holes_of(mesh), flat=self.flat,
+            charts=charts, mark_seams=self.mark_seams, sphere_key=self.sphere_key, pattern=self.pattern,
+        )
 
-    def proceed(self, context: bpy.types.Context, job: core.Job) -> Union[core.Job, str]:
-        mesh = context.active_object.data
-        if isinstance(job, core.SuggestionJob):
-            self._suggested = job.finish()
-            self._tried = core.worth_trying(self._suggested, self.weights)
-            return self._embed_next(mesh)
+    def _start(self, context: bpy.types.Context) -> bool:
+        self._left: list[Unwrapping] = []
+        self._ready: list[Unwrapping] = []
+        self._failures: list[tuple[bpy.types.Object, Exception]] = []
+        objects = blender_mesh.edited(context)
+        self._several = len(objects) > 1
+        with blender_mesh.object_mode(context.active_object):
+            self._arrays = blender_mesh.read_mesh(context.active_object.data)
+            for obj in objects:
+                try:
+                    self._left.append(Unwrapping(obj, self.settings_of(obj.data)))
+                except EXPECTED as error:
+                    self._failures.append((obj, error))
+        pieces = [piece for work in self._left for piece in work.pieces]
+        self._searched = any(piece.missing is not None and piece.missing.signature is None for piece in pieces)
+        mirrors = [(len(piece.surface.loops), _mirrors(piece.signature)) for piece in pieces]
+        self._extra_borders = max((loops - count for loops, count in mirrors), default=0)
+        if not self._start_next():
+            self._report_failures(context)
+            return False
+        return True
+
+    def _start_next(self) -> bool:
+        """The first job of the next object that has one."""
+        while self._left:
+            try:
+                self._job = self._left[0].start()
+                return True
+            except EXPECTED as error:
+                self._failures.append((self._left.pop(0).obj, error))
+        return False
+
+    def _proceed(self, context: bpy.types.Context) -> Optional[set[str]]:
+        job, self._job = self._job, None
+        work = self._left[0]
         try:
-            result = job.finish()
-        except core.OrbifoldError as error:
-            if not self._suggested or error.status not in core.DEPENDS_ON_CONES:
-                raise
-            self._failed.append(error)
-            if len(self._failed) < len(self._tried):
-                return self._embed_next(mesh)
-            raise self._failed[0] from error
-        return self.finish(context, result)
+            self._job = work.proceed(job)
+            if self._job is not None:
+                return None
+            self._ready.append(work)
+        except EXPECTED as error:
+            if isinstance(error, core.OrbifoldError) and error.status == "ORB_CANCELLED":
+                report_failure(self, context, self._arrays, error)
+                return {"CANCELLED"}
+            self._failures.append((work.obj, error))
+        self._left.pop(0)
+        return None if self._start_next() else self._write(context)
 
-    def _embed_next(self, mesh: bpy.types.Mesh) -> core.EmbeddingJob:
-        best = self._tried[len(self._failed)]
-        return self.embedding(mesh, best.signature, best.cones)
+    def _write(self, context: bpy.types.Context) -> set[str]:
+        """All is computed. Objects that failed stay as they are."""
+        if not self._ready:
+            self._report_failures(context)
+            return {"CANCELLED"}
+        said, warned = [], []
+        with blender_mesh.object_mode(context.active_object):
+            for work in self._ready:
+                work.write()
+                said.append(f"{work.obj.name}: {work.message()}" if self._several else work.message())
+                warned += warnings(work.obj)
+            for obj, error in self._failures:
+                self._select(context, obj, error)
+        if self._failures:
+            warned.insert(0, "Not unwrapped, and as before: " + " ".join(self._sentences()))
+        self.report({"WARNING" if warned else "INFO"}, " ".join(warned + said))
+        return {"FINISHED"}
 
-    def write_cones(self, mesh: bpy.types.Mesh, result: core.Result) -> None:
-        if not self._suggested:
-            super().write_cones(mesh, result)
+    def _report_failures(self, context: bpy.types.Context) -> None:
+        if not self._several:
+            report_failure(self, context, self._arrays, self._failures[0][1])
             return
-        best = self._tried[len(self._failed)]
-        suggestions.place(mesh, best.signature, [cones.Cone(*pair) for pair in zip(best.cones, best.orders)])
-        suggestions.keep(mesh, self._suggested, self._missing.fixed)
+        for obj, error in self._failures:
+            self._select(context, obj, error)
+        self.report({"ERROR"}, "No object was unwrapped. " + " ".join(self._sentences()))
 
-    def write(self, context: bpy.types.Context, result: core.Result, computed: tuple) -> str:
-        message = super().write(context, result, computed)
-        if self._failed:
-            names = " and ".join(one.signature for one in self._tried[: len(self._failed)])
-            message += f" {names} could not be embedded: this is the next suggestion."
-        return message + (" The cones were suggested: the sidebar lists others." if self._suggested else "")
+    def _sentences(self) -> list[str]:
+        return [f"{obj.name}: {str(error).rstrip('.')}." for obj, error in self._failures]
+
+    def _select(self, context: bpy.types.Context, obj: bpy.types.Object, error: Exception) -> None:
+        if isinstance(error, core.OrbifoldError):
+            with blender_mesh.object_mode(obj):
+                select_culprits(context, obj, blender_mesh.read_mesh(obj.data), error)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if len(blender_mesh.edited(context)) > 1:  # each object has a signature and a choice of its own
+            return JobOperator.invoke(self, context, event)
+        return super().invoke(context, event)
+
+
+def _mirrors(signature: str) -> int:
+    try:
+        return core.parse_signature(signature).n_mirrors
+    except core.OrbifoldError:
+        return 0
 
 
 def _geometry(signature: str) -> str | None:

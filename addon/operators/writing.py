@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 from bpy.props import BoolProperty, EnumProperty
 
-from .. import blender_mesh, core, faces, materials, sphere_map
+from .. import blender_mesh, core, materials, unwrapping
 from .embedding import EmbeddingOperator
 
 PERIODIC = (
@@ -75,14 +75,8 @@ class UVOperator(EmbeddingOperator):
             blender_mesh.check_uv_space(context.active_object.data)
 
     def compute(self, result: core.Result) -> tuple:
-        layout = faces.layout_of(result, self._arrays, getattr(self, f"chart_{result.geometry}"))
-        remarks, key = faces.remarks(result, layout), None
-        if result.geometry == "spherical" and self.sphere_key:
-            try:
-                key = sphere_map.sphere_of(result, self._arrays)
-            except core.OrbifoldError as error:  # the UVs are certified all the same, and not to be lost
-                remarks.append(f"no shape key: {error}".rstrip("."))
-        return layout, key, remarks
+        chart = getattr(self, f"chart_{result.geometry}")
+        return unwrapping.laid_out(result, self._arrays, chart, self.sphere_key)
 
     def write(self, context: bpy.types.Context, result: core.Result, computed: tuple) -> str:
         layout, key, remarks = computed
@@ -94,13 +88,8 @@ class UVOperator(EmbeddingOperator):
             blender_mesh.write_shape_key(obj, key)
         if self.pattern:
             materials.assign(obj, materials.make_material(obj, result, layout))
-        distortion = result.report["distortion"]
-        said = "".join(f" {remark[:1].upper()}{remark[1:]}." for remark in remarks)
-        return (
-            f"{self.name_of(result)} ({result.geometry}): a bijection, certified; "
-            f"mean angle distortion {distortion['quasi_conformal_mean']:.3f}, "
-            f"area spread {distortion['log_area_std']:.2f}.{said}"
-        )
+        message = unwrapping.described(result, self.name_of(result), remarks)
+        return " ".join([message, *unwrapping.warnings(obj)])
 
     def name_of(self, result: core.Result) -> str:
         return f"Orbifold {result.signature}"

@@ -13,8 +13,8 @@ GEOMETRIES = (("euclidean", "Euclidean"), ("spherical", "Spherical"), ("hyperbol
 def fitting(mesh: bpy.types.Mesh) -> list[core.Signature]:
     """The signatures that fit the mesh's surface and the vertices in its list. Where holes are to be filled, also
     those with fewer mirrors. OrbifoldError where there is no native library."""
-    seen = surface.glance(mesh)
     vertices = [item.vertex for item in mesh.orbifold.cones]
+    seen = surface.around(mesh, vertices)
     places = arrangement.arrange(vertices, seen, True)
     if seen.components != 1:
         return []

@@ -58,7 +58,7 @@ def surface_problem(signature: str, seen: core.Topology, holes: str) -> Optional
     crosscaps = read.n_crosscaps + 2 * read.n_handles if read.n_crosscaps else 0
     wanted = (crosscaps, False) if crosscaps else (read.n_handles, True)
     if seen.components != 1:
-        return f"The mesh is in {seen.components} pieces: leave one"
+        return f"The mesh is in {seen.components} components: those with cones are unwrapped, each by its own orders"
     if (seen.genus, seen.orientable) != wanted or len(seen.loops) < read.n_mirrors:
         genus = max(seen.genus, 0)
         name = core.surface_name(*((genus, 0) if seen.orientable else (0, genus)), len(seen.loops))
@@ -169,7 +169,7 @@ def draw_suggestions(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
 
 
 def draw_signature(layout: bpy.types.UILayout, mesh: bpy.types.Mesh, width: float) -> None:
-    settings, seen = mesh.orbifold, surface.glance(mesh)
+    settings, seen = mesh.orbifold, surface.around(mesh, [item.vertex for item in mesh.orbifold.cones])
     signature = properties.default_signature(mesh)
     n_corners = sum(item.mirror for item in settings.cones)
     state = signature_state(signature, len(settings.cones) - n_corners, n_corners)

@@ -10,6 +10,7 @@ from conftest import checks_of, zip_path
 
 SCRIPTS = (
     "registration.py", "picking.py", "unwrapping.py", "orbifolds.py", "suggesting.py", "bad_input.py", "checking.py",
+    "objects.py",
 )
 
 

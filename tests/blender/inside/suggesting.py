@@ -20,7 +20,7 @@ from harness import (  # noqa: E402
 
 enable()
 core, blender_mesh, suggestions = part("core"), part("blender_mesh"), part("suggestions")
-unwrap, sidebar = part("operators.unwrap"), part("panels.sidebar")
+unwrapping, sidebar = part("unwrapping"), part("panels.sidebar")
 
 
 def table(obj):
@@ -332,7 +332,8 @@ def check_what_is_missing():
     def missing(obj, typed, vertices=(), holes="refuse"):
         if vertices:
             part("properties").set_cones(obj.data, list(vertices), [None] * len(vertices))
-        found = unwrap.missing_cones(obj.data, typed, part("surface").read(obj.data), holes)
+        there = part("cones").read_cones(obj.data)
+        found = unwrapping.missing_cones(there, typed, part("surface").read(obj.data), holes)
         return found if found is None else (found.signature, found.fixed)
 
     assert missing(blob(), "") == (None, []) and missing(disk(), "") == (None, [])
