@@ -122,8 +122,8 @@ def suggest(
 
 
 def check(obj: bpy.types.Object) -> dict:
-    """What stands in the way of unwrapping: `object`, `ready` (nothing has to be mended), and `defects`, each with kind,
-    text, count, blocks, element ("vertex", "edge", "face") and elements; edges are pairs of vertices."""
+    """What stands in the way of unwrapping: `object`, `ready` (nothing has to be mended), and `defects`, each with
+    kind, text, count, blocks, element ("vertex", "edge", "face") and elements; edges are pairs of vertices."""
     with _expected(obj):
         with blender_mesh.object_mode(obj):
             found = checking.defects_of(obj.data)

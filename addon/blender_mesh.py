@@ -183,7 +183,8 @@ def write_uv(
 ) -> None:
     """`uv` (m, 3, 2) per triangle corner -> the UV map `name`, created or replaced, and made the active one.
 
-    `keep_others`: corners of other triangles keep what they have in this map, or where it is new, in the active one. The triangles of one face must agree at the corners that they share (faces.py sees to it).
+    `keep_others`: corners of other triangles keep what they have in this map or, where it is new, in the active one.
+    The triangles of one face must agree at the corners that they share (faces.py sees to it).
     """
     layer = _uv_layer(mesh, name, keep_others)
     corners = read_uv(mesh, name) if keep_others else np.zeros((arrays.n_loops, 2), np.float32)
@@ -251,8 +252,8 @@ def read_seams(mesh: bpy.types.Mesh) -> np.ndarray:
 
 
 def mark_seams(mesh: bpy.types.Mesh, pairs: Optional[np.ndarray], among: Optional[np.ndarray] = None) -> None:
-    """Make the edges between these pairs of vertices seams, and take back those of an earlier call, all of them or those
-    between the vertices `among`; the user's own seams stay. None only takes back."""
+    """Make the edges between these pairs of vertices seams, and take back those of an earlier call, all of them or
+    those between the vertices `among`; the user's own seams stay. None only takes back."""
     seams, kept = read_seams(mesh), np.zeros(len(mesh.edges), bool)
     old = mesh.attributes.get(CUT_ATTRIBUTE)
     if old is not None and (old.domain != "EDGE" or old.data_type != "BOOLEAN"):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The mesh of one object -> the UV map `Orbifold`: its components that have cones, the jobs for each in turn, and at the
-end everything is written at once, so that whatever fails leaves the mesh as it was. No operator, no context:
+"""The mesh of one object -> the UV map `Orbifold`: its components that have cones, the jobs for each in turn, and at
+the end everything is written at once, so that whatever fails leaves the mesh as it was. No operator, no context:
 operators/unwrap.py polls the jobs, api.py waits for them.
 
 A component is embedded with the coordinates of all vertices and its own triangles, so that vertices keep their numbers;
@@ -127,7 +127,9 @@ def _split(
             count = len(np.unique(arrays.polygons[chosen]))
             others.append(Untreated(int(triangles[chosen].min()), count))
             continue
-        part = replace(arrays, triangles=triangles[chosen], loops=arrays.loops[chosen], polygons=arrays.polygons[chosen])
+        part = replace(
+            arrays, triangles=triangles[chosen], loops=arrays.loops[chosen], polygons=arrays.polygons[chosen]
+        )
         pieces.append(Piece(part, chosen, core.topology_of(part.triangles), own))
     stray = [cone.vertex for cone, place in zip(picked, of_pick) if place not in names]
     if stray:
@@ -196,8 +198,8 @@ class Unwrapping:
     def start(self) -> core.Job:
         piece = self.pieces[self._at]
         if piece.missing is None:
-            vertices = [cone.vertex for cone in piece.picked]
-            return self._embed(piece, piece.signature, arrangement.in_sequence(vertices, piece.surface, piece.signature))
+            vertices, signature = [cone.vertex for cone in piece.picked], piece.signature
+            return self._embed(piece, signature, arrangement.in_sequence(vertices, piece.surface, signature))
         missing = piece.missing
         flat = self.settings.flat and not self.settings.sphere_only
         return core.start_suggesting(
@@ -254,7 +256,8 @@ class Unwrapping:
             if result.geometry != "spherical":
                 raise core.OrbifoldError(
                     "ORB_UNSUPPORTED_SIGNATURE",
-                    f"the signature {result.signature} is {result.geometry}, not spherical: choose another, as 432 or 22",
+                    f"the signature {result.signature} is {result.geometry}, not spherical: choose another, as 432 or "
+                    "22",
                 )
             piece.key = sphere_map.sphere_of(result, piece.arrays)
             return
@@ -298,7 +301,8 @@ class Unwrapping:
         """What was done, in sentences."""
         said = [self._message_of(piece) for piece in self.pieces]
         if self.untreated:
-            named = ", ".join(f"that of vertex {other.vertex} ({_faces(other.faces)})" for other in self.untreated[:NAMED])
+            first = self.untreated[:NAMED]
+            named = ", ".join(f"that of vertex {other.vertex} ({_faces(other.faces)})" for other in first)
             more = f" and {len(self.untreated) - NAMED} more" if len(self.untreated) > NAMED else ""
             said.append(f"Components without cones kept their UVs: {named}{more}.")
         return " ".join(said)
@@ -416,8 +420,8 @@ def warnings(obj: bpy.types.Object) -> list[str]:
                 choice = modifier.bl_rna.properties["uv_smooth"].enum_items[smooth].name
                 owner = "" if user == obj else f" of {user.name}"
                 said.append(
-                    f'The modifier "{modifier.name}"{owner} moves UVs, so that seams may show: its setting UV Smooth is '
-                    f'"{choice}"; None leaves them where they are.'
+                    f'The modifier "{modifier.name}"{owner} moves UVs, so that seams may show: its setting UV Smooth '
+                    f'is "{choice}"; None leaves them where they are.'
                 )
     keys = obj.data.shape_keys
     if keys is not None and keys.use_relative:

@@ -41,7 +41,7 @@ def wait_for(job: Job[Made], progress: Progress | None) -> Made:
 
 
 def wait_until_over(job: Job[Made], progress: Progress | None) -> None:
-    """As `wait_for`, but whoever calls has to finish the job, which raises ORB_CANCELLED where `progress` said False."""
+    """As `wait_for`, but the caller finishes the job, which raises ORB_CANCELLED where `progress` said False."""
     pause = 0.001
     try:
         over = False

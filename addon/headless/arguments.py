@@ -125,7 +125,8 @@ def _parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog="./build.sh run",
         usage="./build.sh run [MESH ...] [--jobs LIST] [--orbifold SIGNATURE] [--cones i,j,k | --cones auto]\n"
-        "                       [--orders n,n,n] [--weights conformal|cotan|delaunay|mean-value|mean-value-exact|uniform]\n"
+        "                       [--orders n,n,n]\n"
+        "                       [--weights conformal|cotan|delaunay|mean-value|mean-value-exact|uniform]\n"
         "                       [--holes refuse|fill|mirror] [--output DIR] [--object NAME]\n"
         "                       [--files blend,json,npz,png] [--export] [--blender PATH]",
         description="Map a mesh onto an orbifold: seamless texture coordinates, certified to be a bijection.",

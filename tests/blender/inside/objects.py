@@ -1,10 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Several objects, meshes in several components, linked duplicates, shape keys and modifiers; the Python API."""
 
+import contextlib
 import importlib
+import io
 import json
 import os
+import re
 import sys
+import tempfile
+import textwrap
+from pathlib import Path
 
 import bmesh
 import bpy
@@ -49,7 +55,7 @@ def open_ball(bm):
 
 
 def two_blobs(half=False):
-    """One mesh of two components, of which the second may be a disk, the second one's vertices and faces after the first's."""
+    """One mesh of two components, of which the second may be a disk; its vertices and faces are the last ones."""
     vertices, faces = arrays_of(blob())
     n = len(vertices)
     kept = [face for face in faces if not half or min(vertices[v][2] for v in face) > 0]
@@ -403,10 +409,20 @@ def check_api_components():
     assert [one["orbifold"]["signature"] for one in report["components"]] == ["333", "442"]
 
 
+def check_the_example_in_the_documentation():
+    """Run as it stands: it prints what docs/batch.md says."""
+    text = (Path(__file__).parents[3] / "docs" / "batch.md").read_text(encoding="utf-8")
+    code, rest = re.search(r"```python\n(.*?)```\n\nprints\n\n(.*)", text, re.S).groups()
+    said = re.match(r"(?:    .*\n)+", rest)[0]
+    empty_scene()
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(compile(code, "batch.md", "exec"), {})
+    assert printed.getvalue() == textwrap.dedent(said), printed.getvalue()
+
+
 def check_the_command_from_the_installed_add_on():
     """What `blender --command orbifold` calls: the exit status; the add-on is enabled afterwards."""
-    import tempfile
-
     with tempfile.TemporaryDirectory() as folder:
         obj = blob()
         lines = [f"v {v.co.x} {v.co.y} {v.co.z}" for v in obj.data.vertices]
