@@ -259,7 +259,7 @@ def check_a_component_that_is_a_disk_gets_its_own_signature():
     part("properties").set_cones(obj.data, corners, [4, 4, 2])
     assert obj.data.orbifold.signature == "*442", obj.data.orbifold.signature
     kind, said = reported(bpy.ops.uv.orbifold_unwrap)
-    assert f"Orbifold *442 on the component of vertex {n}" in said, said
+    assert "Orbifold *442 on the component of vertex" in said, said
 
 
 def check_a_failure_names_the_component_and_changes_nothing():
