@@ -78,13 +78,13 @@ typedef struct orb_mesh_arrays {
 } orb_mesh_arrays;
 
 typedef enum orb_weights {
-    ORB_WEIGHTS_COTANGENT = 0,    /* (cot a + cot b) / 2, clamped from below once per edge */
-    ORB_WEIGHTS_MEAN_VALUE,       /* Floater 2003, symmetrised: (w_ij + w_ji) / 2 */
-    ORB_WEIGHTS_UNIFORM,          /* 1 */
-    ORB_WEIGHTS_GIVEN,            /* edge_weights of the request */
-    ORB_WEIGHTS_CONFORMAL,        /* cotangents of the target's own metric, intrinsic Delaunay, then mended */
-    ORB_WEIGHTS_DELAUNAY,         /* cotangents of the mesh's metric on its intrinsic Delaunay triangulation */
-    ORB_WEIGHTS_MEAN_VALUE_EXACT  /* Floater 2003 as it stands, not symmetric: plane only */
+    ORB_WEIGHTS_COTANGENT = 0,   /* (cot a + cot b) / 2, clamped from below once per edge */
+    ORB_WEIGHTS_MEAN_VALUE,      /* Floater 2003, symmetrised: (w_ij + w_ji) / 2 */
+    ORB_WEIGHTS_UNIFORM,         /* 1 */
+    ORB_WEIGHTS_GIVEN,           /* edge_weights of the request */
+    ORB_WEIGHTS_CONFORMAL,       /* cotangents of the target's own metric, intrinsic Delaunay, then mended */
+    ORB_WEIGHTS_DELAUNAY,        /* cotangents of the mesh's metric on its intrinsic Delaunay triangulation */
+    ORB_WEIGHTS_MEAN_VALUE_EXACT /* Floater 2003 as it stands, not symmetric: plane only */
 } orb_weights;
 
 /* What to do with boundary loops beyond the signature's mirrors: those without picked corners, shortest first. */
@@ -97,8 +97,8 @@ typedef enum orb_holes {
 /* Instead of an orbifold: the boundary of a disk goes to a convex polygon, by arc length, and stays there (Tutte 1963;
  * Floater 2003; theorem 1 of 2016 and 2017). */
 typedef struct orb_polygon {
-    int32_t curvature; /* +1, 0, -1 */
-    int32_t n_corners; /* >= 3 */
+    int32_t curvature;     /* +1, 0, -1 */
+    int32_t n_corners;     /* >= 3 */
     const double *corners; /* [n_corners*3] points of the geometry's model, counter-clockwise; NULL: regular */
     double radius;         /* of the regular one, in the geometry; 0: as large as suits it */
 } orb_polygon; /* the request's cones are the mesh's vertices that go to the corners, in turn; none: spread evenly */
@@ -183,10 +183,10 @@ typedef struct orb_report {
     bool orientable;                                                       /* orientable */
     int32_t filled_holes, refined_edges; /* holes closed, and edges halved, for the computation */
     double orbifold_euler;
-    int32_t n_moduli;  /* dimensions of the family of flat orbifolds from which the least conformal energy chose */
-    double modulus[2]; /* shape of the lattice of translations, second over first of a reduced basis (plane only) */
-    int32_t iterations;       /* steps of the minimiser */
-    double energy;            /* 1/2 sum over glued edges of w_ij d_ij^2 */
+    int32_t n_moduli;   /* dimensions of the family of flat orbifolds from which the least conformal energy chose */
+    double modulus[2];  /* shape of the lattice of translations, second over first of a reduced basis (plane only) */
+    int32_t iterations; /* steps of the minimiser */
+    double energy;      /* 1/2 sum over glued edges of w_ij d_ij^2 */
     double relative_gradient; /* max over vertices of |g_v| / sum_j w_vj d_vj */
     int64_t clamped_weights, factor_nonzeros;
     int64_t flipped, flipped_float32;     /* the second: UVs of the default chart rounded to float */
@@ -230,7 +230,7 @@ ORB_API orb_status orb_job_start(const orb_mesh_arrays *mesh, const orb_request 
                                  orb_error *error);
 /* True once the job is done (or cancelled). stage[32] and fraction may be NULL. */
 ORB_API bool orb_job_poll(orb_job *job, char *stage, double *fraction);
-/* Asks the job to stop; orb_job_finish then returns ORB_CANCELLED at once, at any size of mesh. */
+/* Asks the job to stop; finishing it then returns ORB_CANCELLED at once, at any size of mesh. */
 ORB_API void orb_job_cancel(orb_job *job);
 /* Waits, hands over the embedding (or the error), and frees the job, which may be NULL. */
 ORB_API orb_status orb_job_finish(orb_job *job, orb_embedding **embedding, orb_error *error);

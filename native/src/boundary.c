@@ -101,3 +101,38 @@ orb_status boundary_close(const orb_mesh *mesh, const orb_boundary *boundary, co
     free(triangles);
     return status;
 }
+
+/* ------------------------------------------------------------------------------------------------------- ranking */
+
+typedef struct ranked_loop {
+    int32_t loop, picks;
+    double length;
+} ranked_loop;
+
+static int mirrors_first(const void *a, const void *b) {
+    const ranked_loop *x = a, *y = b;
+    if ((x->picks > 0) != (y->picks > 0))
+        return x->picks > 0 ? -1 : 1;
+    if (x->length != y->length)
+        return x->length > y->length ? -1 : 1;
+    return x->loop - y->loop;
+}
+
+orb_status boundary_rank(const orb_mesh *mesh, const orb_boundary *boundary, int32_t n_picks, const int32_t *picks,
+                         int32_t *rank, orb_error *error) {
+    ranked_loop *loops = malloc(((size_t)boundary->n_loops + 1) * sizeof *loops);
+    if (!loops)
+        return error_memory(error);
+    for (int32_t l = 0; l < boundary->n_loops; l++)
+        loops[l] = (ranked_loop){l, 0, boundary_length(mesh, boundary, l)};
+    for (int32_t i = 0; i < n_picks; i++) {
+        const int32_t loop = boundary_loop_of(boundary, picks[i]);
+        if (loop >= 0)
+            loops[loop].picks++;
+    }
+    qsort(loops, (size_t)boundary->n_loops, sizeof *loops, mirrors_first);
+    for (int32_t l = 0; l < boundary->n_loops; l++)
+        rank[l] = loops[l].loop;
+    free(loops);
+    return ORB_OK;
+}

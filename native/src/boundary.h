@@ -20,6 +20,11 @@ int32_t boundary_loop_of(const orb_boundary *boundary, int32_t vertex);
 /* Sum of its edges' lengths. */
 double boundary_length(const orb_mesh *mesh, const orb_boundary *boundary, int32_t loop);
 
+/* rank[n_loops]: the loops in the sequence in which they become mirrors: those with some of the picked vertices first, then
+ * the longest. */
+orb_status boundary_rank(const orb_mesh *mesh, const orb_boundary *boundary, int32_t n_picks, const int32_t *picks,
+                         int32_t *rank, orb_error *error);
+
 /* A fan of triangles about a new vertex, the mean of the loop's, on each loop with closed[loop]. The new vertices and
  * triangles follow the mesh's own. */
 orb_status boundary_close(const orb_mesh *mesh, const orb_boundary *boundary, const bool *closed, orb_mesh **result,

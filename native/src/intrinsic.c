@@ -6,27 +6,19 @@
 
 #include "delaunay.h"
 #include "metric.h"
+#include "shape.h"
 
-static const double pi = 3.14159265358979323846;
 enum { NEWTON_STEPS = 2 }; /* more gave nothing (docs/decisions.md) */
 
 /* The angle that the orbifold has around each vertex. */
 static orb_status wanted_angles(const orb_embedding *embedding, double **result, orb_error *error) {
-    const orb_mesh *mesh = embedding->mesh;
     const orb_surface *surface = embedding->surface;
-    double *angles = malloc(((size_t)mesh->n_vertices + 1) * sizeof *angles);
-    bool *border = malloc((size_t)mesh->n_vertices + 1);
+    double *angles = malloc(((size_t)embedding->mesh->n_vertices + 1) * sizeof *angles);
     *result = angles;
-    if (!angles || !border) {
-        free(border);
+    if (!angles || !shape_flat_angles(embedding->mesh, angles))
         return error_memory(error);
-    }
-    mesh_find_boundary(mesh, border);
-    for (int32_t v = 0; v < mesh->n_vertices; v++)
-        angles[v] = border[v] ? pi : 2 * pi;
     for (int32_t k = 0; k < surface->n_marks; k++)
         angles[surface->vertex[k]] /= surface->order[k];
-    free(border);
     return ORB_OK;
 }
 
@@ -88,7 +80,7 @@ orb_status intrinsic_create(orb_embedding *embedding, const orb_problem *problem
     status = find_mirrors(intrinsic, embedding, problem, error);
     if (status != ORB_OK)
         goto done;
-    metric_lengths(mesh, intrinsic->original);
+    shape_lengths(mesh, intrinsic->original);
     memcpy(intrinsic->lengths, intrinsic->original, (size_t)mesh->n_edges * sizeof *intrinsic->lengths);
     status = conformal && embedding->surface->signature ? take_metric(intrinsic, embedding, error)
                                                         : error_set(error, ORB_OK, "%s", "");

@@ -1,10 +1,11 @@
-/* orb_embed on a thread of the library's own. SPDX-License-Identifier: GPL-3.0-or-later
+/* orb_embed and orb_suggest_cones on a thread of the library's own. SPDX-License-Identifier: GPL-3.0-or-later
  *
  * The job owns copies of everything that the computation reads, and is shared by two holders: the caller (from
  * orb_job_start to orb_job_finish) and the thread. Whoever lets go last frees it. So a cancelled job costs the caller
  * nothing: orb_job_finish detaches the thread and returns, and the thread frees the rest when it next asks for leave
  * to go on, which inside a long factorisation may take seconds. */
 #include "error.h"
+#include "orbifold_cones.h"
 
 #include <pthread.h>
 #include <signal.h>
@@ -12,17 +13,18 @@
 #include <string.h>
 
 /* Ample for the recursions of the orderings; only pages that are touched take memory. */
-enum { JOB_STACK_BYTES = 16 * 1024 * 1024, JOB_STAGE_LENGTH = 32 };
+enum { JOB_STACK_BYTES = 16 * 1024 * 1024, JOB_STAGE_LENGTH = 32, MOST_COPIES = 8 };
 
 struct orb_job {
     pthread_t thread;
     /* Read by the thread only, after the start. */
     orb_mesh_arrays mesh;
+    bool suggests; /* which of the two requests it is */
     orb_request request;
-    double *vertices, *edge_weights, *corners;
+    orb_suggest_request suggest;
     orb_polygon polygon;
-    int32_t *triangles, *cones, *orders;
-    char *signature;
+    int32_t n_copies;
+    void *copies[MOST_COPIES]; /* of all that the mesh and the request point to */
     /* Under the mutex. */
     pthread_mutex_t mutex;
     pthread_cond_t changed; /* done or cancelled has become true */
@@ -32,34 +34,31 @@ struct orb_job {
     double fraction;
     orb_status status;
     orb_embedding *embedding;
+    orb_suggestions *suggestions;
     orb_error error;
 };
 
-/* *copy = the first `count` elements of source; NULL for no array (orb_embed says whether that is an error). */
-static bool job_copy(const void *source, int64_t count, size_t size, void **copy) {
-    *copy = NULL;
-    if (!source || count <= 0)
-        return true;
-    if ((uint64_t)count > SIZE_MAX / size)
-        return false;
-    *copy = malloc((size_t)count * size);
-    if (!*copy)
-        return false;
-    memcpy(*copy, source, (size_t)count * size);
-    return true;
+/* A copy of the first `count` elements, which the job frees. NULL where there are none (whether that is an error, the
+ * computation says) and, with *fine false, when memory runs out. */
+static void *job_copy(orb_job *job, const void *source, int64_t count, size_t size, bool *fine) {
+    if (!source || count <= 0 || !*fine)
+        return NULL;
+    void *copy = (uint64_t)count > SIZE_MAX / size ? NULL : malloc((size_t)count * size);
+    *fine = copy != NULL;
+    if (!copy)
+        return NULL;
+    memcpy(copy, source, (size_t)count * size);
+    job->copies[job->n_copies++] = copy;
+    return copy;
 }
 
 static void job_free(orb_job *job) {
     if (!job)
         return;
     orb_embedding_free(job->embedding);
-    free(job->vertices);
-    free(job->triangles);
-    free(job->signature);
-    free(job->cones);
-    free(job->orders);
-    free(job->edge_weights);
-    free(job->corners);
+    orb_suggestions_free(job->suggestions);
+    for (int32_t k = 0; k < job->n_copies; k++)
+        free(job->copies[k]);
     free(job);
 }
 
@@ -91,12 +90,15 @@ static bool job_progress(const char *stage, double fraction, void *user) {
 static void *job_run(void *user) {
     orb_job *job = user;
     orb_embedding *embedding = NULL;
+    orb_suggestions *suggestions = NULL;
     orb_error error = {0};
-    orb_status status = orb_embed(&job->mesh, &job->request, &embedding, &error);
+    orb_status status = job->suggests ? orb_suggest_cones(&job->mesh, &job->suggest, &suggestions, &error)
+                                      : orb_embed(&job->mesh, &job->request, &embedding, &error);
 
     pthread_mutex_lock(&job->mutex);
     job->status = status;
     job->embedding = embedding;
+    job->suggestions = suggestions;
     job->error = error;
     job->done = true;
     pthread_cond_broadcast(&job->changed);
@@ -104,48 +106,78 @@ static void *job_run(void *user) {
     return NULL;
 }
 
-/* A job with copies of the arrays, its mutex not yet made; NULL when memory runs out. */
-static orb_job *job_create(const orb_mesh_arrays *mesh, const orb_request *request) {
+/* A job with a copy of the mesh; NULL when memory runs out. */
+static orb_job *job_create(const orb_mesh_arrays *mesh) {
     orb_job *job = calloc(1, sizeof *job);
     if (!job)
         return NULL;
-    void *vertices = NULL, *triangles = NULL, *signature = NULL, *cones = NULL, *orders = NULL, *weights = NULL;
-    void *corners = NULL;
-    bool copied =
-        job_copy(mesh->vertices, 3 * (int64_t)mesh->n_vertices, sizeof *mesh->vertices, &vertices) &&
-        job_copy(mesh->triangles, 3 * (int64_t)mesh->n_triangles, sizeof *mesh->triangles, &triangles) &&
-        job_copy(request->cones, request->n_cones, sizeof *request->cones, &cones) &&
-        job_copy(request->orders, request->n_cones, sizeof *request->orders, &orders) &&
-        job_copy(request->edge_weights, 3 * (int64_t)request->n_edge_weights, sizeof *request->edge_weights,
-                 &weights) &&
-        (!request->polygon || job_copy(request->polygon->corners, 3 * (int64_t)request->polygon->n_corners,
-                                       sizeof *request->polygon->corners, &corners)) &&
-        (!request->signature || job_copy(request->signature, (int64_t)strlen(request->signature) + 1, 1, &signature));
-    job->vertices = vertices;
-    job->triangles = triangles;
-    job->signature = signature;
-    job->cones = cones;
-    job->orders = orders;
-    job->edge_weights = weights;
-    job->corners = corners;
-    if (!copied) {
-        job_free(job);
-        return NULL;
-    }
-    job->mesh = (orb_mesh_arrays){mesh->n_vertices, job->vertices, mesh->n_triangles, job->triangles};
-    job->request = *request;
-    job->request.signature = job->signature;
-    job->request.cones = job->cones;
-    job->request.orders = job->orders;
-    job->request.edge_weights = job->edge_weights;
+    bool fine = true;
+    job->mesh = *mesh;
+    job->mesh.vertices = job_copy(job, mesh->vertices, 3 * (int64_t)mesh->n_vertices, sizeof(double), &fine);
+    job->mesh.triangles = job_copy(job, mesh->triangles, 3 * (int64_t)mesh->n_triangles, sizeof(int32_t), &fine);
+    if (fine)
+        return job;
+    job_free(job);
+    return NULL;
+}
+
+static bool take_request(orb_job *job, const orb_request *request) {
+    bool fine = true;
+    orb_request *own = &job->request;
+    *own = *request;
+    if (request->signature)
+        own->signature = job_copy(job, request->signature, (int64_t)strlen(request->signature) + 1, 1, &fine);
+    own->cones = job_copy(job, request->cones, request->n_cones, sizeof(int32_t), &fine);
+    own->orders = job_copy(job, request->orders, request->n_cones, sizeof(int32_t), &fine);
+    own->edge_weights =
+        job_copy(job, request->edge_weights, 3 * (int64_t)request->n_edge_weights, sizeof(double), &fine);
     if (request->polygon) {
         job->polygon = *request->polygon;
-        job->polygon.corners = job->corners;
-        job->request.polygon = &job->polygon;
+        job->polygon.corners =
+            job_copy(job, job->polygon.corners, 3 * (int64_t)job->polygon.n_corners, sizeof(double), &fine);
+        own->polygon = &job->polygon;
     }
-    job->request.progress = job_progress;
-    job->request.user = job;
-    return job;
+    own->progress = job_progress;
+    own->user = job;
+    return fine;
+}
+
+/* The signatures' texts in one piece, the pointers to them in another. */
+static bool take_signatures(orb_job *job, const orb_suggest_request *request) {
+    bool fine = true;
+    size_t length = 0;
+    if (!request->signatures || request->n_signatures <= 0)
+        return true;
+    for (int32_t k = 0; k < request->n_signatures; k++)
+        length += request->signatures[k] ? strlen(request->signatures[k]) + 1 : 0;
+    const char **list = job_copy(job, request->signatures, request->n_signatures, sizeof *request->signatures, &fine);
+    char *texts = malloc(length + 1);
+    if (!fine || !texts) {
+        free(texts);
+        return false;
+    }
+    job->copies[job->n_copies++] = texts;
+    for (int32_t k = 0; k < request->n_signatures; k++) {
+        if (!list[k])
+            continue;
+        const size_t bytes = strlen(list[k]) + 1;
+        list[k] = memcpy(texts, list[k], bytes);
+        texts += bytes;
+    }
+    job->suggest.signatures = list;
+    return true;
+}
+
+static bool take_suggest_request(orb_job *job, const orb_suggest_request *request) {
+    bool fine = true;
+    orb_suggest_request *own = &job->suggest;
+    job->suggests = true;
+    *own = *request;
+    own->fixed = job_copy(job, request->fixed, request->n_fixed, sizeof(int32_t), &fine);
+    own->keep_away = job_copy(job, request->keep_away, job->mesh.n_vertices, sizeof(double), &fine);
+    own->progress = job_progress;
+    own->user = job;
+    return fine && take_signatures(job, request);
 }
 
 /* Starts the thread with every signal blocked except those that are its own faults, so that a signal to the process
@@ -172,14 +204,8 @@ static int job_spawn(orb_job *job) {
     return fault;
 }
 
-orb_status orb_job_start(const orb_mesh_arrays *mesh, const orb_request *request, orb_job **job, orb_error *error) {
-    if (job)
-        *job = NULL;
-    if (!mesh || !request || !job)
-        return error_set(error, ORB_BAD_ARGUMENT, "orb_job_start needs a mesh, a request and a place for the job");
-    orb_job *made = job_create(mesh, request);
-    if (!made)
-        return error_memory(error);
+/* Starts a job that has all that it needs; frees it if that fails. */
+static orb_status job_start(orb_job *made, orb_job **job, orb_error *error) {
     if (pthread_mutex_init(&made->mutex, NULL)) {
         job_free(made);
         return error_memory(error);
@@ -198,6 +224,32 @@ orb_status orb_job_start(const orb_mesh_arrays *mesh, const orb_request *request
     }
     *job = made;
     return ORB_OK;
+}
+
+orb_status orb_job_start(const orb_mesh_arrays *mesh, const orb_request *request, orb_job **job, orb_error *error) {
+    if (job)
+        *job = NULL;
+    if (!mesh || !request || !job)
+        return error_set(error, ORB_BAD_ARGUMENT, "orb_job_start needs a mesh, a request and a place for the job");
+    orb_job *made = job_create(mesh);
+    if (made && take_request(made, request))
+        return job_start(made, job, error);
+    job_free(made);
+    return error_memory(error);
+}
+
+orb_status orb_job_start_suggest(const orb_mesh_arrays *mesh, const orb_suggest_request *request, orb_job **job,
+                                 orb_error *error) {
+    if (job)
+        *job = NULL;
+    if (!mesh || !request || !job)
+        return error_set(error, ORB_BAD_ARGUMENT,
+                         "orb_job_start_suggest needs a mesh, a request and a place for the job");
+    orb_job *made = job_create(mesh);
+    if (made && take_suggest_request(made, request))
+        return job_start(made, job, error);
+    job_free(made);
+    return error_memory(error);
 }
 
 bool orb_job_poll(orb_job *job, char *stage, double *fraction) {
@@ -226,9 +278,8 @@ void orb_job_cancel(orb_job *job) {
     pthread_mutex_unlock(&job->mutex);
 }
 
-orb_status orb_job_finish(orb_job *job, orb_embedding **embedding, orb_error *error) {
-    if (embedding)
-        *embedding = NULL;
+/* Waits, hands over what was asked for (the other is NULL), and lets go of the job. */
+static orb_status job_finish(orb_job *job, orb_embedding **embedding, orb_suggestions **suggestions, orb_error *error) {
     if (!job)
         return error_set(error, ORB_BAD_ARGUMENT, "there is no job to finish; start one first");
     pthread_mutex_lock(&job->mutex);
@@ -247,6 +298,10 @@ orb_status orb_job_finish(orb_job *job, orb_embedding **embedding, orb_error *er
             *embedding = job->embedding;
             job->embedding = NULL;
         }
+        if (suggestions) {
+            *suggestions = job->suggestions;
+            job->suggestions = NULL;
+        }
     }
     job_release(job);
     /* A thread that is done has let go of the job and only has to return; any other one is left to itself. */
@@ -255,4 +310,16 @@ orb_status orb_job_finish(orb_job *job, orb_embedding **embedding, orb_error *er
     else
         pthread_detach(thread);
     return status;
+}
+
+orb_status orb_job_finish(orb_job *job, orb_embedding **embedding, orb_error *error) {
+    if (embedding)
+        *embedding = NULL;
+    return job_finish(job, embedding, NULL, error);
+}
+
+orb_status orb_job_finish_suggest(orb_job *job, orb_suggestions **suggestions, orb_error *error) {
+    if (suggestions)
+        *suggestions = NULL;
+    return job_finish(job, NULL, suggestions, error);
 }

@@ -9,9 +9,6 @@
 
 #include "mesh.h"
 
-/* Lengths of the mesh's edges, times a power of two that brings the longest into [1, 2). */
-void metric_lengths(const orb_mesh *mesh, double *lengths /* [n_edges] */);
-
 typedef struct orb_metric {
     double *scale;      /* [n_vertices] u; 0 for isolated vertices */
     double *lengths;    /* [n_edges] scaled */

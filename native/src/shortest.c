@@ -1,4 +1,4 @@
-/* Dijkstra's algorithm towards one vertex. SPDX-License-Identifier: GPL-3.0-or-later
+/* Dijkstra's algorithm, towards one vertex or all. SPDX-License-Identifier: GPL-3.0-or-later
  *
  * The heap knows where each vertex is in it, and nothing is reset between two searches, so that a search costs what
  * it visits and not what the mesh has. */
@@ -95,4 +95,32 @@ bool shortest_find(shortest_search *search, const orb_mesh *mesh, const int32_t 
         } while (h != start);
     }
     return false;
+}
+
+static void lower(shortest_search *search, int32_t vertex, double length, double *distance) {
+    shortest_node *node = search->nodes + vertex;
+    if (!(length < distance[vertex]))
+        return;
+    if (node->round != search->round) {
+        node->round = search->round;
+        node->slot = search->n_heap++;
+    }
+    distance[vertex] = length;
+    heap_raise(search, node->slot, (shortest_entry){length, vertex});
+}
+
+void shortest_lower(shortest_search *search, const orb_mesh *mesh, int32_t from, double *distance) {
+    search->round++;
+    search->n_heap = 0;
+    lower(search, from, 0, distance);
+    while (search->n_heap > 0) {
+        const int32_t vertex = heap_take(search);
+        orb_turn turn = mesh_turn_start(mesh, vertex);
+        const int32_t start = turn.corner;
+        do {
+            const int32_t out = turn.corner, in = halfedge_previous(out);
+            lower(search, halfedge_to(mesh, out), distance[vertex] + mesh_edge_length(mesh, out), distance);
+            lower(search, halfedge_from(mesh, in), distance[vertex] + mesh_edge_length(mesh, in), distance);
+        } while (mesh_turn(mesh, &turn) && turn.corner != start);
+    }
 }

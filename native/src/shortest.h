@@ -36,4 +36,8 @@ void shortest_clear(shortest_search *search);
 bool shortest_find(shortest_search *search, const orb_mesh *mesh, const int32_t *place, int32_t free_place,
                    int32_t from, int32_t to);
 
+/* distance[v] = min(distance[v], length of the shortest edge path from `from` to v), on any mesh, for all v. It visits those
+ * whose distance falls and their neighbours only. */
+void shortest_lower(shortest_search *search, const orb_mesh *mesh, int32_t from, double *distance);
+
 #endif

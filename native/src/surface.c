@@ -13,38 +13,16 @@
 
 /* --- which boundary loops are mirrors, which are holes ----------------------------------------------------------- */
 
-typedef struct loop_rank {
-    int32_t loop, picks;
-    double length;
-} loop_rank;
-
-static int mirrors_first(const void *a, const void *b) {
-    const loop_rank *x = a, *y = b;
-    if ((x->picks > 0) != (y->picks > 0))
-        return x->picks > 0 ? -1 : 1;
-    if (x->length != y->length)
-        return x->length > y->length ? -1 : 1;
-    return x->loop - y->loop;
-}
-
-/* closed[n_loops]: those that are left when the loops with picks, then the longest ones, have become mirrors. */
+/* closed[n_loops]: those that are left when the first ones have become mirrors. */
 static orb_status choose_holes(const orb_mesh *mesh, const orb_boundary *boundary, int32_t n_mirrors,
                                const orb_request *request, bool *closed, orb_error *error) {
-    loop_rank *rank = malloc(((size_t)boundary->n_loops + 1) * sizeof *rank);
-    if (!rank)
-        return error_memory(error);
-    for (int32_t l = 0; l < boundary->n_loops; l++)
-        rank[l] = (loop_rank){l, 0, boundary_length(mesh, boundary, l)};
-    for (int32_t i = 0; i < request->n_cones; i++) {
-        int32_t loop = boundary_loop_of(boundary, request->cones[i]);
-        if (loop >= 0)
-            rank[loop].picks++;
-    }
-    qsort(rank, (size_t)boundary->n_loops, sizeof *rank, mirrors_first);
-    for (int32_t l = 0; l < boundary->n_loops; l++)
-        closed[rank[l].loop] = l >= n_mirrors;
+    int32_t *rank = malloc(((size_t)boundary->n_loops + 1) * sizeof *rank);
+    orb_status status =
+        rank ? boundary_rank(mesh, boundary, request->n_cones, request->cones, rank, error) : error_memory(error);
+    for (int32_t l = 0; l < boundary->n_loops && status == ORB_OK; l++)
+        closed[rank[l]] = l >= n_mirrors;
     free(rank);
-    return ORB_OK;
+    return status;
 }
 
 /* Sets surface->plain; takes the input over. */

@@ -1,6 +1,5 @@
-/* metric.c and sides.c. SPDX-License-Identifier: GPL-3.0-or-later */
+/* metric.c, shape.c, laplacian.c and sides.c. SPDX-License-Identifier: GPL-3.0-or-later */
 #define metric_create tested_metric_create
-#define metric_lengths tested_metric_lengths
 #define metric_free tested_metric_free
 
 #include <stdbool.h>
@@ -14,7 +13,12 @@ static void *counted_calloc(size_t count, size_t size) { return allocations++ ==
 
 #define malloc counted_malloc
 #define calloc counted_calloc
+#include "../../native/src/laplacian.c"
 #include "../../native/src/metric.c"
+#define pi pi_of_shape
+#include "../../native/src/shape.c"
+#undef pi
+#include "sides.h"
 #undef malloc
 #undef calloc
 
@@ -44,7 +48,7 @@ static solved prepare(sample_mesh sample) {
     solved all = {.mesh = mesh_of(sample)};
     all.lengths = sample_allocate((size_t)all.mesh->n_edges, sizeof(double));
     all.angles = sample_allocate((size_t)all.mesh->n_vertices, sizeof(double));
-    metric_lengths(all.mesh, all.lengths);
+    shape_lengths(all.mesh, all.lengths);
     return all;
 }
 

@@ -1,0 +1,49 @@
+/* What given cones cost. SPDX-License-Identifier: GPL-3.0-or-later */
+#include "orbifold_cones.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "spread.h"
+#include "surface.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* u of the surface's own cones and corners, scale[surface->plain->n_vertices]. */
+static orb_status find_scale(const orb_surface *surface, double *scale, double *spread, orb_error *error) {
+    orb_spread *form = NULL;
+    const orb_signature *signature = surface->signature;
+    double *charge = malloc(((size_t)surface->n_marks + 1) * sizeof *charge);
+    orb_status status = charge ? spread_create(surface->plain, &form, error) : error_memory(error);
+    for (int32_t k = 0; k < surface->n_marks && status == ORB_OK; k++)
+        charge[k] = (surface->mirror[k] ? 1 : 2) * pi * (1 - 1.0 / surface->order[k]);
+    const orb_charges charges = {surface->n_marks, surface->vertex, charge,
+                                 signature->curvature == 0 ? 0 : signature->euler};
+    if (status == ORB_OK)
+        status = spread_scales(form, 1, &charges, &scale, error);
+    if (status == ORB_OK && spread)
+        *spread = spread_deviation(form, scale);
+    spread_free(form);
+    free(charge);
+    return status;
+}
+
+orb_status orb_predict(const orb_mesh_arrays *mesh, const orb_request *request, double *spread, double *scale,
+                       orb_error *error) {
+    if (!mesh || !request || request->n_cones < 0 || (request->n_cones > 0 && !request->cones) || request->polygon)
+        return error_set(error, ORB_BAD_ARGUMENT, "orb_predict needs a mesh, a request with a signature and its cones");
+    orb_surface *surface = NULL;
+    double *found = NULL;
+    orb_status status = surface_create(mesh, request, NULL, &surface, error);
+    if (status == ORB_OK) {
+        found = malloc(((size_t)surface->plain->n_vertices + 1) * sizeof *found);
+        status = found ? find_scale(surface, found, spread, error) : error_memory(error);
+    }
+    if (status == ORB_OK && scale)
+        memcpy(scale, found, (size_t)mesh->n_vertices * sizeof *scale);
+    if (status == ORB_OK)
+        error_set(error, ORB_OK, "%s", "");
+    surface_free(surface);
+    free(found);
+    return status;
+}
