@@ -82,6 +82,14 @@ def arrange(vertices: Sequence[int], surface: core.Topology, all_mirrors: bool) 
     return Arrangement(cones, tuple(borders), *((genus, 0) if surface.orientable else (0, genus)))
 
 
+def in_sequence(vertices: Sequence[int], surface: core.Topology, signature: str) -> list[int]:
+    """These picks in the sequence of a signature, as `core.embed` takes them; as they are where they do not fit it.
+    OrbifoldError where it does not parse."""
+    read = core.parse_signature(signature)
+    places = arrange(vertices, surface, read.n_mirrors == len(surface.loops)).matched(read)
+    return [vertices[place] for place in (places or range(len(vertices)))]
+
+
 def _along(loop: np.ndarray, at: dict[int, int]) -> tuple[int, ...]:
     """The places of the picks on a loop, in turn from the one picked first towards the one picked second."""
     met = [at[vertex] for vertex in loop[np.isin(loop, list(at))].tolist()] if at else []

@@ -296,6 +296,38 @@ def write_int_attribute(mesh: bpy.types.Mesh, name: str, values: np.ndarray) -> 
     attribute.data.foreach_set("value", np.ascontiguousarray(values, np.int32))
 
 
+def read_group_weights(mesh: bpy.types.Mesh, group: int) -> np.ndarray:
+    """(n,) float64 the weight of each vertex in a vertex group, by the group's index; 0 where it is not a member. There is
+    no fast call for these."""
+    return np.fromiter(
+        (next((member.weight for member in v.groups if member.group == group), 0.0) for v in mesh.vertices),
+        np.float64, len(mesh.vertices),
+    )
+
+
+def check_attribute(mesh: bpy.types.Mesh, name: str, data_type: str) -> None:
+    """Raise BlenderMeshError where there is an attribute of this name that is no vertex attribute of this type."""
+    attribute = mesh.attributes.get(name)
+    if attribute is not None and (attribute.domain != "POINT" or attribute.data_type != data_type):
+        raise BlenderMeshError(f'The mesh has another attribute "{name}": rename it')
+
+
+def write_float_attribute(mesh: bpy.types.Mesh, name: str, values: np.ndarray) -> None:
+    """`values` (n,) per vertex -> an attribute, created or replaced (check_attribute)."""
+    attribute = mesh.attributes.get(name) or mesh.attributes.new(name, "FLOAT", "POINT")
+    attribute.data.foreach_set("value", np.ascontiguousarray(values, np.float32))
+
+
+def write_vertex_colour(mesh: bpy.types.Mesh, name: str, colour: np.ndarray) -> None:
+    """`colour` (n, 4), linear, per vertex -> a colour attribute, created or replaced (check_attribute), and made the
+    active one, which the viewport shows."""
+    if name not in mesh.attributes:
+        mesh.color_attributes.new(name, "FLOAT_COLOR", "POINT")
+    mesh.attributes[name].data.foreach_set("color", np.ascontiguousarray(colour, np.float32).ravel())
+    mesh.color_attributes.active_color = mesh.color_attributes[name]
+    mesh.update()
+
+
 def write_corner_colour(mesh: bpy.types.Mesh, arrays: MeshArrays, colour: np.ndarray, name: str) -> None:
     """`colour` (m, 3, 4) per triangle corner -> a colour attribute on face corners."""
     corners = np.ones((arrays.n_loops, 4), np.float32)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the add-on keeps on a mesh: the list of its cones and corners (a mirror, cones.py), the signature as it was
-typed, and what to do with holes.
+typed, what to do with holes, and suggestions (suggestions.py).
 
 Orders and signature say the same thing twice, so that either may be edited: a signature that parses gives the cones
 their orders; an order that is changed in the list, and a cone that comes or goes, rewrites the signature. While fewer
@@ -15,7 +15,7 @@ from typing import Optional
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
 
-from . import arrangement, cones, core, surface
+from . import arrangement, cones, core, suggestions, surface
 
 NEW_ORDER = 2
 HOLES = (
@@ -85,6 +85,7 @@ def sync(mesh: bpy.types.Mesh) -> None:
     cones.sync(mesh)
     orders = [item.order for item in mesh.orbifold.cones]
     if not orders:
+        suggestions.sync(mesh)
         return
     places = arranged(mesh, [item.vertex for item in mesh.orbifold.cones])
     typed = read_signature(mesh.orbifold.signature)
@@ -112,6 +113,7 @@ def _signature_changed(settings: "OrbifoldMesh", _context: bpy.types.Context) ->
     if cones.is_writing():
         return
     mesh = settings.id_data
+    suggestions.forget_replaced(mesh)
     read, picked = read_signature(settings.signature), cones.read_cones(mesh)
     if read is None or not picked:
         return
@@ -158,9 +160,15 @@ class OrbifoldMesh(bpy.types.PropertyGroup):
         description="What to do with borders of the mesh that the signature has no mirror for",
         items=HOLES,
     )
+    keep_away: StringProperty(
+        name="Keep Away",
+        description="A vertex group where suggested cones are unwelcome: the more, the greater its weight; where it is "
+        "1 there is never one",
+    )
+    suggestions: PointerProperty(type=suggestions.OrbifoldSuggestions)
 
 
-CLASSES = (OrbifoldCone, OrbifoldMesh)
+CLASSES = (OrbifoldCone, *suggestions.CLASSES, OrbifoldMesh)
 
 
 def register() -> None:

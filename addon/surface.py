@@ -18,21 +18,22 @@ def read(mesh: bpy.types.Mesh) -> core.Topology:
         if owner is not None:
             owner.update_from_editmode()
     surface = core.topology_of(*blender_mesh.read_faces(mesh))
-    _remembered[mesh.name_full] = (_counts(mesh), surface)
+    _remembered[mesh.name_full] = (counts(mesh), surface)
     return surface
 
 
 def glance(mesh: bpy.types.Mesh) -> core.Topology:
     """For panels and menus: as `read`, but only where the numbers of vertices, edges and faces have changed."""
-    counts, surface = _remembered.get(mesh.name_full, (None, None))
-    return surface if surface is not None and counts == _counts(mesh) else read(mesh)
+    known, surface = _remembered.get(mesh.name_full, (None, None))
+    return surface if surface is not None and known == counts(mesh) else read(mesh)
 
 
 def forget() -> None:
     _remembered.clear()
 
 
-def _counts(mesh: bpy.types.Mesh) -> tuple[int, int, int]:
+def counts(mesh: bpy.types.Mesh) -> tuple[int, int, int]:
+    """Of vertices, edges, faces, in any mode."""
     if mesh.is_editmode:
         bm = bmesh.from_edit_mesh(mesh)
         return len(bm.verts), len(bm.edges), len(bm.faces)

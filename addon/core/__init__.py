@@ -9,6 +9,7 @@ from .binding import library
 from .embed import EmbeddingJob, embed, start_embedding
 from .errors import OrbifoldError
 from .fitting import fitting_signatures
+from .jobs import Job
 from .meshio import MeshFileError, read_mesh
 from .polygon import Polygon
 from .result import CHARTS, Result
@@ -22,18 +23,33 @@ from .signatures import (
     surface_name,
     tile_outline,
 )
+from .suggest import (
+    DEPENDS_ON_CONES,
+    Prediction,
+    Suggestion,
+    SuggestionJob,
+    predict,
+    start_suggesting,
+    suggest_cones,
+    worth_trying,
+)
 from .topology import Topology, topology_of
 from .whole import WholeLayout, edge_keys, whole_layout
 
 __all__ = [
     "CHARTS",
+    "DEPENDS_ON_CONES",
     "EmbeddingJob",
+    "Job",
     "MeshFileError",
     "OrbifoldError",
     "Outline",
     "Polygon",
+    "Prediction",
     "Result",
     "Signature",
+    "Suggestion",
+    "SuggestionJob",
     "Topology",
     "WholeLayout",
     "describe",
@@ -44,10 +60,14 @@ __all__ = [
     "geometry_of",
     "library",
     "parse_signature",
+    "predict",
     "read_mesh",
     "start_embedding",
+    "start_suggesting",
+    "suggest_cones",
     "surface_name",
     "tile_outline",
     "topology_of",
     "whole_layout",
+    "worth_trying",
 ]

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""native/include/orbifold.h, declared for Python. Nothing else in the add-on uses ctypes.
+"""native/include/orbifold.h and orbifold_cones.h, declared for Python. Nothing else in the add-on uses ctypes.
 
 `library()` loads liborbifold.so from this folder at the first call. Names and the sequence of fields are the
-header's; tests/core/test_binding.py compares them with what a C compiler makes of it."""
+headers'; tests/core/test_binding.py compares them with what a C compiler makes of them."""
 
 from __future__ import annotations
 
 import ctypes
 import functools
 import weakref
+from collections.abc import Callable, Sequence
 from ctypes import POINTER, Structure, c_bool, c_char, c_char_p, c_double, c_int, c_int32, c_int64, c_void_p
 from pathlib import Path
 
@@ -33,6 +34,8 @@ WEIGHTS = {
 }
 WEIGHTS_GIVEN = 3
 HOLES = {"refuse": 0, "fill": 1, "mirror": 2}
+SYMMETRIES = {"detect": 0, "ignore": 1}
+SYMMETRY_PLANE = 2
 CHARTS = {
     "default": 0,
     "periodic": 1,
@@ -168,7 +171,36 @@ class Report(Structure):
     ]
 
 
+class SuggestRequest(Structure):
+    _fields_ = [
+        ("n_signatures", c_int32),
+        ("signatures", POINTER(c_char_p)),
+        ("n_fixed", c_int32),
+        ("fixed", INT32S),
+        ("keep_away", DOUBLES),
+        ("holes", c_int),
+        ("symmetry", c_int),
+        ("plane", c_double * 4),
+        ("progress", Progress),
+        ("user", c_void_p),
+    ]
+
+
+class Suggestion(Structure):
+    _fields_ = [
+        ("signature", c_char_p),
+        ("n_cones", c_int32),
+        ("cones", INT32S),
+        ("orders", INT32S),
+        ("predicted", c_double),
+        ("conformal", c_double),
+        ("measured", c_bool),
+        ("symmetric", c_bool),
+    ]
+
+
 EMBEDDING = c_void_p  # orb_embedding *
+SUGGESTIONS = c_void_p  # orb_suggestions *
 JOB = c_void_p  # orb_job *
 
 # name: (result, arguments)
@@ -188,6 +220,14 @@ PROTOTYPES = {
     "orb_job_cancel": (None, [JOB]),
     "orb_job_finish": (c_int, [JOB, POINTER(EMBEDDING), POINTER(Error)]),
     "orb_version": (c_char_p, []),
+    "orb_suggest_cones": (c_int, [POINTER(MeshArrays), POINTER(SuggestRequest), POINTER(SUGGESTIONS), POINTER(Error)]),
+    "orb_suggestions_free": (None, [SUGGESTIONS]),
+    "orb_suggestions_count": (c_int32, [SUGGESTIONS]),
+    "orb_suggestions_view": (Suggestion, [SUGGESTIONS, c_int32]),
+    "orb_suggestions_plane": (c_bool, [SUGGESTIONS, DOUBLES]),
+    "orb_predict": (c_int, [POINTER(MeshArrays), POINTER(Request), DOUBLES, DOUBLES, POINTER(Error)]),
+    "orb_job_start_suggest": (c_int, [POINTER(MeshArrays), POINTER(SuggestRequest), POINTER(JOB), POINTER(Error)]),
+    "orb_job_finish_suggest": (c_int, [JOB, POINTER(SUGGESTIONS), POINTER(Error)]),
 }
 
 
@@ -316,43 +356,90 @@ class Embedding:
         return positions, mended.value
 
 
-class Job:
-    """An orb_job. One that is dropped without `finish` is cancelled, and its thread cleans up after itself."""
+class Suggestions:
+    """An orb_suggestions, freed with this object."""
 
-    def __init__(
-        self,
-        vertices: np.ndarray,
-        triangles: np.ndarray,
-        signature: str | None,
-        cones: np.ndarray,
-        orders: np.ndarray | None,
-        holes: int,
-        polygon: Polygon | None,
-        weights: int,
-        clamp: float,
-        edge_weights: np.ndarray | None,
-    ) -> None:
-        self._pointer = c_void_p()
+    def __init__(self, pointer: c_void_p) -> None:
+        self._pointer = pointer
         self._native = library()
-        mesh = MeshArrays(len(vertices), doubles(vertices), len(triangles), int32s(triangles))
-        request = self._native.orb_request_default()
-        if signature is not None:
-            request.signature = encode_signature(signature)
-        if polygon is not None:
-            request.polygon = ctypes.pointer(polygon)
-        request.holes = holes
-        request.n_cones, request.cones, request.orders = len(cones), int32s(cones), int32s(orders)
-        request.weights, request.clamp = weights, clamp
-        if edge_weights is not None:
-            request.n_edge_weights, request.edge_weights = len(edge_weights), doubles(edge_weights)
-        record = Error()  # the library copies the arrays before the call returns
-        check(self._native.orb_job_start(mesh, request, self._pointer, record), record)
-        self._abandon = weakref.finalize(self, Job._cancel_and_finish, self._native, self._pointer)
+        weakref.finalize(self, self._native.orb_suggestions_free, pointer)
+
+    def views(self) -> list[Suggestion]:
+        """Best first; pointers into the suggestions, valid only while this object is."""
+        count = self._native.orb_suggestions_count(self._pointer)
+        return [self._native.orb_suggestions_view(self._pointer, number) for number in range(count)]
+
+
+def request_of(
+    signature: str | None,
+    cones: np.ndarray,
+    orders: np.ndarray | None,
+    holes: int,
+    polygon: Polygon | None = None,
+    edge_weights: np.ndarray | None = None,
+    **settings: int | float,
+) -> Request:
+    """The library's usual request with these arrays, which the caller keeps alive, and other fields by their names."""
+    request = library().orb_request_default()
+    if signature is not None:
+        request.signature = encode_signature(signature)
+    request.n_cones, request.cones, request.orders = len(cones), int32s(cones), int32s(orders)
+    request.holes = holes
+    if polygon is not None:
+        request.polygon = ctypes.pointer(polygon)
+    if edge_weights is not None:
+        request.n_edge_weights, request.edge_weights = len(edge_weights), doubles(edge_weights)
+    for name, value in settings.items():
+        setattr(request, name, value)
+    return request
+
+
+def suggest_request_of(
+    signatures: Sequence[str] | None,
+    fixed: np.ndarray,
+    keep_away: np.ndarray | None,
+    holes: int,
+    symmetry: int,
+    plane: Sequence[float],
+) -> SuggestRequest:
+    """Arrays are kept alive by the caller; `signatures` None: the usual ones."""
+    names = [encode_signature(signature) for signature in signatures or ()]
+    request = SuggestRequest(n_signatures=len(names), signatures=(c_char_p * len(names))(*names))
+    request.n_fixed, request.fixed, request.keep_away = len(fixed), int32s(fixed), doubles(keep_away)
+    request.holes, request.symmetry, request.plane = holes, symmetry, tuple(plane)
+    return request
+
+
+def predict(vertices: np.ndarray, triangles: np.ndarray, request: Request) -> tuple[float, np.ndarray]:
+    """orb_predict: the spread of log area and the log scale at each vertex (n,)."""
+    spread, scale, record = c_double(), np.empty(len(vertices)), Error()
+    mesh = mesh_arrays(vertices, triangles)
+    check(library().orb_predict(mesh, request, spread, doubles(scale), record), record)
+    return spread.value, scale
+
+
+def mesh_arrays(vertices: np.ndarray, triangles: np.ndarray) -> MeshArrays:
+    return MeshArrays(len(vertices), doubles(vertices), len(triangles), int32s(triangles))
+
+
+class Job:
+    """An orb_job, an embedding's or that of suggestions, after the kind of request. One that is dropped without
+    `finish` is cancelled, and its thread cleans up after itself."""
+
+    def __init__(self, vertices: np.ndarray, triangles: np.ndarray, request: Request | SuggestRequest) -> None:
+        native = self._native = library()
+        if isinstance(request, Request):
+            start, self._finish, self._made = native.orb_job_start, native.orb_job_finish, Embedding
+        else:
+            start, self._finish, self._made = native.orb_job_start_suggest, native.orb_job_finish_suggest, Suggestions
+        self._pointer, record = c_void_p(), Error()  # the library copies the arrays before the call returns
+        check(start(mesh_arrays(vertices, triangles), request, self._pointer, record), record)
+        self._abandon = weakref.finalize(self, Job._cancel_and_finish, native, self._finish, self._pointer)
 
     @staticmethod
-    def _cancel_and_finish(native: ctypes.CDLL, pointer: c_void_p) -> None:
+    def _cancel_and_finish(native: ctypes.CDLL, finish: Callable, pointer: c_void_p) -> None:
         native.orb_job_cancel(pointer)
-        native.orb_job_finish(pointer, None, None)
+        finish(pointer, None, None)
 
     def poll(self) -> tuple[str, float, bool]:
         """(stage, fraction, whether it is done or cancelled)"""
@@ -363,10 +450,10 @@ class Job:
     def cancel(self) -> None:
         self._native.orb_job_cancel(self._pointer)
 
-    def finish(self) -> Embedding:
-        """Waits, and gives the embedding or raises OrbifoldError; the job is gone then."""
+    def finish(self) -> Embedding | Suggestions:
+        """Waits, and gives what was computed or raises OrbifoldError; the job is gone then."""
         self._abandon.detach()
         pointer, self._pointer = self._pointer, c_void_p()  # a finished job takes no calls (NULL is harmless)
-        embedding, record = EMBEDDING(), Error()
-        check(self._native.orb_job_finish(pointer, embedding, record), record)
-        return Embedding(embedding)
+        made, record = c_void_p(), Error()
+        check(self._finish(pointer, made, record), record)
+        return self._made(made)

@@ -9,42 +9,27 @@ gives a job to poll.
 
 from __future__ import annotations
 
-import contextlib
-import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import binding
+from .arrays import holes_of, mesh_of, picks_of, rows_of_three, unknown
 from .errors import OrbifoldError
+from .jobs import Job, Progress, wait_for
 from .polygon import Polygon, polygon_arrays
 from .result import Result, chart_number, result_of
 from .signatures import geometry_of
 
-INT32 = np.iinfo(np.int32)
 FIXED_CHARTS = {"euclidean": "conformal"}  # a polygon in the plane has no lattice
 
-Progress = Callable[[str, float], object]
 
-
-class EmbeddingJob:
-    """A computation on the library's own thread; `start_embedding` makes it. Drop it at any time: it is cancelled."""
+class EmbeddingJob(Job[Result]):
+    """`start_embedding` makes it; `finish` gives the certified embedding."""
 
     def __init__(self, job: binding.Job, n_vertices: int, chart: str | None) -> None:
-        self._job, self._n_vertices, self._chart = job, n_vertices, chart
-
-    def poll(self) -> tuple[str, float, bool]:
-        """(stage, fraction in [0, 1], whether it is over); returns at once."""
-        return self._job.poll()
-
-    def cancel(self) -> None:
-        """`finish` then raises ORB_CANCELLED at once, at any size of mesh."""
-        self._job.cancel()
-
-    def finish(self) -> Result:
-        """Waits for the end, once only: the result, or OrbifoldError."""
-        return result_of(self._job.finish(), self._n_vertices, self._chart)
+        super().__init__(job, lambda embedding: result_of(embedding, n_vertices, chart))
 
 
 def start_embedding(
@@ -60,21 +45,13 @@ def start_embedding(
     polygon: Polygon | None = None,
 ) -> EmbeddingJob:
     """Starts what `embed` does and returns at once. Arguments are those of `embed`; arrays may change afterwards."""
-    points = _rows_of_three(vertices, "vertices")
-    faces = _integers(triangles, (-1, 3), "triangles", "ORB_INDEX_OUT_OF_RANGE", "triangle")
-    picked = _integers(cones, (-1,), "cones", "ORB_BAD_CONE", "vertex")
-    if orders is not None:
-        orders = _integers(orders, (-1,), "orders", "ORB_BAD_ORDER", None)
-        if len(orders) != len(picked):
-            raise OrbifoldError(
-                "ORB_BAD_ORDER", f"{len(orders)} orders are given for {len(picked)} cones; give one for each cone"
-            )
+    points, faces = mesh_of(vertices, triangles)
+    picked, orders = picks_of(cones, orders)
     if (signature is None) == (polygon is None):
         raise OrbifoldError("ORB_BAD_ARGUMENT", "give a signature such as '442', or else a polygon, and not both")
     if polygon is not None and not isinstance(polygon, Polygon):
         raise OrbifoldError("ORB_BAD_ARGUMENT", "the polygon is no core.Polygon; give one such as Polygon(n=5)")
-    if not isinstance(holes, str) or holes not in binding.HOLES:
-        raise _unknown("way to treat holes", holes, binding.HOLES)
+    treated = holes_of(holes)
     kind, edge_weights = _weights(weights)
     try:
         clamp = float(clamp)
@@ -86,10 +63,10 @@ def start_embedding(
         native_polygon = binding.Polygon(curvature, n_corners, binding.doubles(corners), radius)
         chart = chart or FIXED_CHARTS.get(polygon.geometry)
     _check_chart(chart, signature, polygon, holes)
-    job = binding.Job(
-        *(points, faces, signature, picked, orders, binding.HOLES[holes], native_polygon, kind, clamp, edge_weights)
+    request = binding.request_of(
+        *(signature, picked, orders, treated, native_polygon, edge_weights), weights=kind, clamp=clamp
     )
-    return EmbeddingJob(job, len(points), chart)
+    return EmbeddingJob(binding.Job(points, faces, request), len(points), chart)
 
 
 def embed(
@@ -126,23 +103,7 @@ def embed(
     Raises OrbifoldError. A cancelled computation raises ORB_CANCELLED, or what `progress` raised, at once.
     """
     job = start_embedding(vertices, triangles, signature, cones, orders, weights, clamp, chart, holes, polygon)
-    pause = 0.001
-    try:
-        over = False
-        while not over:
-            stage, fraction, over = job.poll()
-            if progress is not None and progress(stage, fraction) is False:
-                job.cancel()
-                break
-            if not over:
-                time.sleep(pause)
-                pause = min(2 * pause, 0.02)
-    except BaseException:  # also an interrupt from the keyboard
-        job.cancel()
-        with contextlib.suppress(OrbifoldError):
-            job.finish()
-        raise
-    return job.finish()
+    return wait_for(job, progress)
 
 
 def _check_chart(chart: str | None, signature: str | None, polygon: Polygon | None, holes: str) -> None:
@@ -155,55 +116,13 @@ def _check_chart(chart: str | None, signature: str | None, polygon: Polygon | No
     elif holes != "mirror":
         chart_number(chart, geometry_of(signature))
     elif chart not in binding.CHARTS:
-        raise _unknown("chart", chart, binding.CHARTS)
-
-
-def _unknown(what: str, name: object, there: Iterable[str]) -> OrbifoldError:
-    return OrbifoldError("ORB_BAD_ARGUMENT", f"there is no {what} '{name}'; use {', '.join(there)}")
-
-
-def _rows_of_three(values: ArrayLike, what: str) -> np.ndarray:
-    """A contiguous (., 3) float64 array of our own."""
-    try:
-        array = np.array(values, dtype=np.float64, order="C")
-    except (TypeError, ValueError) as reason:
-        raise OrbifoldError("ORB_BAD_ARGUMENT", f"the {what} are not an array of numbers: {reason}") from reason
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise OrbifoldError("ORB_BAD_ARGUMENT", f"the {what} have the shape {array.shape}; give three numbers a row")
-    return array
-
-
-def _integers(values: ArrayLike, shape: tuple[int, ...], what: str, status: str, element: str | None) -> np.ndarray:
-    """A contiguous int32 array of our own, of shape (-1,) or (-1, 3). Integers that C cannot hold: `status`."""
-    try:
-        array = np.asarray(values)
-    except ValueError as reason:  # rows of different lengths
-        raise OrbifoldError("ORB_BAD_ARGUMENT", f"the {what} are not an array of integers: {reason}") from reason
-    if array.size == 0:
-        return np.zeros((0, *shape[1:]), np.int32)
-    if array.dtype.kind not in "iu":
-        raise OrbifoldError("ORB_BAD_ARGUMENT", f"the {what} are of the type {array.dtype}; give integers")
-    if array.ndim != len(shape) or array.shape[1:] != shape[1:]:
-        wanted = "three integers a row" if len(shape) == 2 else "a plain sequence"
-        raise OrbifoldError("ORB_BAD_ARGUMENT", f"the {what} have the shape {array.shape}; give {wanted}")
-    beyond = (array < INT32.min) | (array > INT32.max)
-    if beyond.any():
-        rows = np.flatnonzero(beyond.reshape(len(array), -1).any(1))
-        shown = rows if element == "triangle" else array[rows]
-        raise OrbifoldError(
-            status,
-            f"entry {rows[0]} of the {what} is beyond 32-bit integers; give indices that are there",
-            [int(entry) for entry in shown[: binding.MAX_ELEMENTS]],
-            element,
-            len(rows),
-        )
-    return np.array(array, dtype=np.int32, order="C")
+        raise unknown("chart", chart, binding.CHARTS)
 
 
 def _weights(weights: str | ArrayLike) -> tuple[int, np.ndarray | None]:
     """The C enum's entry, and the rows i, j, w_ij where they are given."""
     if not isinstance(weights, str):
-        return binding.WEIGHTS_GIVEN, _rows_of_three(weights, "weights")
+        return binding.WEIGHTS_GIVEN, rows_of_three(weights, "weights")
     if weights not in binding.WEIGHTS:
         there = ", ".join(f"'{name}'" for name in binding.WEIGHTS)
         raise OrbifoldError(

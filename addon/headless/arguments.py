@@ -17,9 +17,9 @@ HOLES = ("refuse", "fill", "mirror")
 EPILOG = """\
 Cones are vertices of the mesh, counted from 0 in the sequence of the file, one for each number of the signature
 and in its sequence ("632": the first gets order 6); those after a * are mirror corners and lie on the mesh's
-boundary. `--cones auto`, which is also what happens without --cones, takes extremities: the vertex farthest from the
-middle of the mesh (or from its mirrors), then again and again the vertex farthest along the mesh's edges from all
-cones so far; corners are spread evenly along the boundary. The same mesh always gets the same cones.
+boundary. `--cones auto`, which is also what happens without --cones, places them where areas are stretched least;
+without --orbifold too, the signature is the best of those that are usual for the mesh. Where such cones cannot be
+embedded the next best are tried. The same mesh always gets the same cones.
 
 A mesh with more boundary loops than the signature has mirrors (*) is refused; with --holes fill the others, the
 shortest ones, are closed for the computation, and with --holes mirror each adds a * to the signature.
@@ -32,8 +32,8 @@ certified to be a bijection; otherwise it is 1, stderr has one line that says wh
 @dataclass(frozen=True)
 class Arguments:
     mesh: Optional[Path]  # None: the sample creature
-    signature: str
-    cones: Optional[tuple[int, ...]]  # None: chosen automatically
+    signature: Optional[str]  # None: not said
+    cones: Optional[tuple[int, ...]]  # None: suggested
     orders: Optional[tuple[int, ...]]  # None: as the signature says
     weights: str
     holes: str
@@ -84,9 +84,9 @@ def _parser() -> argparse.ArgumentParser:
     add = parser.add_argument
     add("mesh", metavar="MESH", nargs="?", type=Path,
         help=".obj .ply .stl .glb .gltf .fbx .blend .off; without it a sample creature is grown")
-    add("--orbifold", metavar="SIGNATURE", default=DEFAULT_SIGNATURE,
+    add("--orbifold", metavar="SIGNATURE",
         help="Conway's notation: 442, 2222, 532, 22(12), 237, *632, 4*2, 22*, **, *x, xx, 22x, o, oo, ... "
-             "(default %(default)s)")
+             f"(default: the best for the mesh; with --cones {DEFAULT_SIGNATURE})")
     add("--cones", metavar="i,j,k", default="auto", help="vertices, or auto (default)")
     add("--orders", metavar="n,n,n", help="the order of each cone, where not in the signature's sequence")
     add("--weights", metavar="KIND", choices=WEIGHTS, default="conformal",

@@ -12,7 +12,7 @@ import time
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Iterator, Sequence
+from typing import Iterator, Optional, Sequence
 
 import bpy
 import numpy as np
@@ -20,10 +20,10 @@ import numpy as np
 from .. import blender_mesh, core, faces, materials, pattern
 from ..sphere_map import sphere_of
 from .arguments import Arguments, HelpWanted, read_arguments
-from .automatic import automatic_cones
 from .errors import RunError
 from .importers import load_object
 from .picture import Subject, render_picture
+from .placing import Placed, embed_placed
 from .sample import make_creature
 from .tiling import make_tiling
 
@@ -38,10 +38,23 @@ class Unwrapped:
     name: str
     obj: bpy.types.Object
     arrays: blender_mesh.MeshArrays
-    result: core.Result
+    placed: Placed
     layout: faces.FaceLayout
     material: bpy.types.Material
     remarks: list[str]  # what is not as one may expect, and why
+
+    @property
+    def result(self) -> core.Result:
+        return self.placed.result
+
+    @property
+    def report(self) -> dict:
+        """NAME.json."""
+        suggestion = self.placed.suggestion
+        if suggestion is None:
+            return self.result.report
+        kept = ("predicted", "measured", "symmetric")
+        return {**self.result.report, "suggested": {name: getattr(suggestion, name) for name in kept}}
 
 
 def run(words: Sequence[str]) -> list[str]:
@@ -51,9 +64,10 @@ def run(words: Sequence[str]) -> list[str]:
         arguments = read_arguments(words)
     except HelpWanted as text:
         return str(text).splitlines()
-    signature = core.parse_signature(arguments.signature)
+    if arguments.signature is not None:
+        core.parse_signature(arguments.signature)  # before the mesh is read, which can take long
     with _quiet():
-        unwrapped = _unwrap(arguments, signature)
+        unwrapped = _unwrap(arguments)
         _write_files(unwrapped, arguments.output)
     return _summary(unwrapped, arguments.output, time.perf_counter() - started)
 
@@ -65,7 +79,7 @@ def one_line(reason: BaseException) -> str:
 # --------------------------------------------------------------------------------------------------- the work
 
 
-def _unwrap(arguments: Arguments, signature: core.Signature) -> Unwrapped:
+def _unwrap(arguments: Arguments) -> Unwrapped:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     if arguments.mesh is None:
         name, obj = "creature", make_creature()
@@ -73,18 +87,15 @@ def _unwrap(arguments: Arguments, signature: core.Signature) -> Unwrapped:
         name = arguments.mesh.stem
         obj = load_object(arguments.mesh.resolve(), arguments.object_name, core.read_mesh)
     arrays = blender_mesh.read_mesh(obj.data)
-    cones = arguments.cones
-    if cones is None:
-        cones = automatic_cones(arrays.vertices, arrays.triangles, signature)
-    result = core.embed(arrays.vertices, arrays.triangles, arguments.signature, cones, arguments.orders,
-                        arguments.weights, holes=arguments.holes)
+    placed = embed_placed(arguments, arrays)
+    result = placed.result
     if not result.report["certificate"]["bijective"]:
         raise RunError("the result is not certified to be a bijection")
     layout = faces.layout_of(result, arrays, result.chart)
-    remarks = faces.remarks(result, layout)
+    remarks = placed.remarks + faces.remarks(result, layout)
     if result.geometry == "spherical":
         remarks += _write_sphere(obj, arrays, result)
-    return Unwrapped(name, obj, arrays, result, layout, _dress(obj, arrays, result, layout), remarks)
+    return Unwrapped(name, obj, arrays, placed, layout, _dress(obj, arrays, result, layout), remarks)
 
 
 def _write_sphere(obj: bpy.types.Object, arrays: blender_mesh.MeshArrays, result: core.Result) -> list[str]:
@@ -117,7 +128,7 @@ def _write_files(unwrapped: Unwrapped, output: Path) -> None:
         stem = part / unwrapped.name
         _show_material()
         bpy.ops.wm.save_as_mainfile(filepath=str(stem.with_name(f"{stem.name}.blend")), copy=True, compress=True)
-        report = json.dumps(unwrapped.result.report, indent=2, allow_nan=False)
+        report = json.dumps(unwrapped.report, indent=2, allow_nan=False)
         stem.with_name(f"{stem.name}.json").write_text(report + "\n", encoding="utf-8")
         unwrapped.result.save(stem.with_name(f"{stem.name}.npz"))
         render_picture(_subject(unwrapped), stem.with_name(f"{stem.name}.png"))
@@ -173,11 +184,19 @@ def _summary(unwrapped: Unwrapped, output: Path, seconds: float) -> list[str]:
     return [
         f"{unwrapped.name}: {report['mesh']['vertices']} vertices onto {report['orbifold']['signature']} "
         f"({report['orbifold']['geometry']}), cones {cones}",
+        *_suggested(unwrapped.placed.suggestion),
         f"certified: a bijection, {report['certificate']['flipped']} flipped triangles, mean quasi-conformal error "
-        f"{report['distortion']['quasi_conformal_mean']:.3f}",
+        f"{report['distortion']['quasi_conformal_mean']:.3f}, area spread {report['distortion']['log_area_std']:.2f}",
         f"wrote {files} in {seconds:.1f} s",
         *unwrapped.remarks,
     ]
+
+
+def _suggested(suggestion: Optional[core.Suggestion]) -> list[str]:
+    if suggestion is None:
+        return []
+    how = "measured" if suggestion.measured else "predicted"
+    return [f"the cones were suggested: {how} area spread {suggestion.predicted:.2f}"]
 
 
 @contextmanager

@@ -1,6 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Operators, one idea a file."""
 
-from . import cones, fixed_boundary, sphere, unwrap
+from . import cones, fixed_boundary, sphere, stretch, suggesting, unwrap
 
-CLASSES = (*cones.CLASSES, *unwrap.CLASSES, *fixed_boundary.CLASSES, *sphere.CLASSES)
+CLASSES = (
+    *cones.CLASSES,
+    *suggesting.CLASSES,
+    *stretch.CLASSES,
+    *unwrap.CLASSES,
+    *fixed_boundary.CLASSES,
+    *sphere.CLASSES,
+)

@@ -7,8 +7,8 @@ import bmesh
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
-from .. import cones, properties
-from .embedding import mesh_problem
+from .. import cones, properties, suggestions
+from .jobs import mesh_problem
 
 
 class ConeOperator:
@@ -93,6 +93,7 @@ class MESH_OT_orbifold_clear_cones(ConeOperator, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         cones.write_cones(context.active_object.data, [])
+        suggestions.forget_replaced(context.active_object.data)
         return {"FINISHED"}
 
 

@@ -7,7 +7,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from .. import arrangement, blender_mesh, cones, core
-from .embedding import mesh_problem
+from .jobs import mesh_problem
 from .writing import UVOperator
 
 
@@ -58,8 +58,9 @@ class UV_OT_orbifold_fixed_boundary(UVOperator, bpy.types.Operator):
         layout.prop(self, "weights")
         self.draw_writing(self.geometry)
 
-    def start(self, mesh: bpy.types.Mesh) -> core.EmbeddingJob:
-        self._changed = False
+    def start(self, context: bpy.types.Context) -> core.Job:
+        mesh = context.active_object.data
+        self._text = None  # no signature
         self._extra_borders = len(self._surface.loops) - 1
         picked = [cone.vertex for cone in cones.read_cones(mesh)]
         loops = self._surface.loops
@@ -72,11 +73,10 @@ class UV_OT_orbifold_fixed_boundary(UVOperator, bpy.types.Operator):
             places = arrangement.arrange(picked, self._surface, False)
             border = max(places.borders, key=len, default=())
             corners = [picked[place] for place in border] if len(border) >= 3 else []
-        holes = mesh.orbifold.holes if self.holes == "mesh" else self.holes
         polygon = core.Polygon(self.geometry, n=len(corners) or self.sides, radius=self.radius)
         return core.start_embedding(
             *(self._arrays.vertices, self._arrays.triangles, None, corners),
-            weights=self.weights, clamp=self.clamp, holes=holes, polygon=polygon,
+            weights=self.weights, clamp=self.clamp, holes=self.holes_of(mesh), polygon=polygon,
         )
 
     def name_of(self, result: core.Result) -> str:

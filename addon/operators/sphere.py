@@ -9,11 +9,13 @@ from bpy.props import EnumProperty
 
 from .. import blender_mesh, core, faces, properties, sphere_map
 from .embedding import EmbeddingOperator
-from .unwrap import unwrap_problem
+from .jobs import mesh_problem
 
 
 def sphere_problem(context: bpy.types.Context) -> str | None:
-    problem = unwrap_problem(context)
+    problem = mesh_problem(context)
+    if problem is None and not properties.default_signature(context.active_object.data):
+        problem = "Pick at least two cones first: use Suggest Cones, or select vertices in edit mode and use Add Cones"
     if problem is None:
         try:
             geometry = core.geometry_of(properties.default_signature(context.active_object.data))

@@ -6,7 +6,6 @@ from __future__ import annotations
 import bpy
 
 from .. import arrangement, core, previews, properties, surface
-from ..operators.unwrap import UV_OT_orbifold_unwrap
 
 GEOMETRIES = (("euclidean", "Euclidean"), ("spherical", "Spherical"), ("hyperbolic", "Hyperbolic"))
 
@@ -64,9 +63,12 @@ class MESH_MT_orbifold_signatures(bpy.types.Menu):
                     entry.signature = offer.signature
 
 
-def draw_unwrap_entry(self, _context: bpy.types.Context) -> None:
+def draw_entries(self, _context: bpy.types.Context) -> None:
+    """What is in a menu is found by F3 too."""
     self.layout.separator()
-    self.layout.operator(UV_OT_orbifold_unwrap.bl_idname)
+    self.layout.operator("uv.orbifold_unwrap")
+    self.layout.operator("mesh.orbifold_suggest_cones")
+    self.layout.operator("mesh.orbifold_show_stretch")
 
 
 UV_MENUS = ("VIEW3D_MT_uv_map", "IMAGE_MT_uvs")
@@ -75,9 +77,9 @@ CLASSES = (MESH_MT_orbifold_signatures,)
 
 def register() -> None:
     for name in UV_MENUS:
-        getattr(bpy.types, name).append(draw_unwrap_entry)
+        getattr(bpy.types, name).append(draw_entries)
 
 
 def unregister() -> None:
     for name in UV_MENUS:
-        getattr(bpy.types, name).remove(draw_unwrap_entry)
+        getattr(bpy.types, name).remove(draw_entries)

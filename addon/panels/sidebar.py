@@ -8,8 +8,8 @@ from typing import Optional
 
 import bpy
 
-from .. import core, properties, surface
-from ..operators.embedding import mesh_problem
+from .. import core, properties, suggestions, surface
+from ..operators.jobs import mesh_problem
 from .menus import MESH_MT_orbifold_signatures
 
 
@@ -22,7 +22,7 @@ class SignatureState:
 def signature_state(signature: str, n_cones: int, n_corners: int = 0) -> SignatureState:
     """What the panel says below the signature field, where so many cones and mirror corners are picked."""
     if not signature:
-        return SignatureState("Type a signature, choose one from the menu, or pick cones", False)
+        return SignatureState("Orbifold Unwrap will choose signature and cones, or type, choose and pick your own", False)
     try:
         read = core.parse_signature(signature)
         words = core.describe(signature).partition(": ")[2]
@@ -35,7 +35,8 @@ def signature_state(signature: str, n_cones: int, n_corners: int = 0) -> Signatu
     tasks += _tasks(len(read.orders) - read.n_interior - n_corners, "mirror corner", "on the border", n_cones)
     name = f"{read.geometry.capitalize()} {words}"
     if tasks:
-        return SignatureState(f"{name}: {' and '.join(tasks)}", False)
+        unaided = "; or unwrap, and they will be suggested" if not n_cones + n_corners else ""
+        return SignatureState(f"{name}: {' and '.join(tasks)}{unaided}", False)
     if read.curvature > 0:
         return SignatureState(f"{name}; {round(2 / read.euler)} copies cover the sphere", True)
     return SignatureState(name, True)
@@ -79,6 +80,30 @@ class MESH_UL_orbifold_cones(bpy.types.UIList):
         jump.index = index
 
 
+class MESH_UL_orbifold_suggestions(bpy.types.UIList):
+    """Rows are buttons: a click anywhere places the cones, as one undo step."""
+
+    bl_idname = "MESH_UL_orbifold_suggestions"
+
+    def draw_item(self, context, layout, _data, item, _icon, _active_data, _active_property, index=0) -> None:
+        placed = suggestions.placed_row(context.active_object.data) == index
+        row = layout.row(align=True)
+        row.alignment = "LEFT"
+        texts = table_texts(item)
+        for (factor, text), icon in zip(zip(COLUMNS, texts), ("RADIOBUT_ON" if placed else "RADIOBUT_OFF", "NONE", "NONE")):
+            cell = row.row()
+            cell.ui_units_x = factor
+            cell.operator("mesh.orbifold_place_suggestion", text=text, icon=icon, emboss=False).index = index
+
+
+COLUMNS = (5.0, 3.0, 2.0)  # widths in units of the interface
+
+
+def table_texts(row) -> tuple[str, str, str]:
+    """Signature, spread, number of cones of a suggestion."""
+    return row.signature, f"{'~' if row.measured else ''}{row.predicted:.2f}", str(len(row.picks()))
+
+
 class OrbifoldPanel:
     """Mix-in: one sidebar tab in two editors."""
 
@@ -94,6 +119,7 @@ class OrbifoldPanel:
             return
         mesh = context.active_object.data
         draw_cones(layout, mesh.orbifold)
+        draw_suggestions(layout, context.active_object)
         draw_signature(layout, mesh, context.region.width)
         column = layout.column(align=True)
         column.scale_y = 1.3
@@ -101,6 +127,7 @@ class OrbifoldPanel:
         column.operator("object.orbifold_sphere")
         if surface.glance(mesh).loops:
             layout.operator("uv.orbifold_fixed_boundary")
+        layout.operator("mesh.orbifold_show_stretch")
 
 
 def draw_cones(layout: bpy.types.UILayout, settings) -> None:
@@ -117,6 +144,28 @@ def draw_cones(layout: bpy.types.UILayout, settings) -> None:
     side.operator("mesh.orbifold_move_cone", text="", icon="TRIA_DOWN").direction = "DOWN"
     side.separator()
     side.operator("mesh.orbifold_clear_cones", text="", icon="X")
+
+
+def draw_suggestions(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
+    settings = obj.data.orbifold
+    column = layout.column()
+    column.operator("mesh.orbifold_suggest_cones", icon="LIGHT")
+    row = column.row()
+    row.alert = bool(settings.keep_away) and settings.keep_away not in obj.vertex_groups
+    row.prop_search(settings, "keep_away", obj, "vertex_groups")
+    table = settings.suggestions
+    if not len(table.rows):
+        return
+    stale = suggestions.is_stale(obj.data)
+    if stale:
+        column.label(text="The mesh has changed: suggest again", icon="ERROR")
+    column = column.column()
+    column.active = not stale
+    titles = column.row(align=True)
+    for text in ("Signature", "Spread", "Cones"):
+        titles.label(text=text)
+    name = MESH_UL_orbifold_suggestions.bl_idname
+    column.template_list(name, "", table, "rows", table, "active", rows=min(5, len(table.rows)), sort_lock=True)
 
 
 def draw_signature(layout: bpy.types.UILayout, mesh: bpy.types.Mesh, width: float) -> None:
@@ -169,4 +218,4 @@ class IMAGE_PT_orbifold(OrbifoldPanel, bpy.types.Panel):
         return context.space_data.mode == "UV" or context.space_data.show_uvedit
 
 
-CLASSES = (MESH_UL_orbifold_cones, VIEW3D_PT_orbifold, IMAGE_PT_orbifold)
+CLASSES = (MESH_UL_orbifold_cones, MESH_UL_orbifold_suggestions, VIEW3D_PT_orbifold, IMAGE_PT_orbifold)

@@ -24,6 +24,9 @@ CHECK_LAYOUT = SHARED / "tools" / "check_layout.py"
 SPOT = SHARED / "meshes" / "spot.obj"
 BLENDER = os.environ.get("ORBIFOLD_BLENDER") or shutil.which("blender")
 ENDINGS = {".blend", ".json", ".npz", ".png"}
+sys.path.insert(0, str(CHECKOUT / "addon"))
+import core  # noqa: E402
+
 START = [BLENDER, "--background", "--factory-startup", "--python-exit-code", "1", "--python"]
 
 pytestmark = pytest.mark.skipif(BLENDER is None, reason="no Blender: set ORBIFOLD_BLENDER")
@@ -87,7 +90,7 @@ def pear(tmp_path: Path) -> Path:
     return write_obj(tmp_path / "pear.obj", *sphere_mesh())
 
 
-def check_files(folder: Path, name: str, signature: str, cones: list[int]) -> dict:
+def check_files(folder: Path, name: str, signature: str, cones: list[int], suggested: bool = False) -> dict:
     """All that is promised of the four files; the report."""
     assert {path.name for path in folder.iterdir()} == {name + ending for ending in ENDINGS}
     report = json.loads((folder / f"{name}.json").read_text())
@@ -100,6 +103,8 @@ def check_files(folder: Path, name: str, signature: str, cones: list[int]) -> di
         "symmetric_dirichlet",
         "seconds": "topology cut tile initial assemble analyze factor solve certify total",
     }
+    if suggested:
+        keys["suggested"] = "predicted measured symmetric"
     assert {group: set(report[group]) for group in report} == {group: set(of.split()) for group, of in keys.items()}
     assert report["orbifold"]["signature"] == signature
     assert [cone["vertex"] for cone in report["orbifold"]["cones"]] == cones
@@ -145,7 +150,7 @@ def test_four_files(pear: Path, tmp_path: Path, signature: str, cones: list[int]
 
 
 def test_off_orders_and_defaults(tmp_path: Path) -> None:
-    """.off; orders in another sequence than the signature's; out/ by default; cones by themselves, twice the same."""
+    """.off; orders in another sequence than the signature's; out/ by default; suggested cones, twice the same."""
     mesh = write_off(tmp_path / "pear.off", *sphere_mesh())
     done = run(mesh, "--orders", "2,4,4", "--blender", "ignored", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -155,6 +160,27 @@ def test_off_orders_and_defaults(tmp_path: Path) -> None:
     again = run(mesh, "--orders", "2,4,4", "--cones", "auto", "--weights", "mean-value", cwd=tmp_path)
     assert again.returncode == 0, again.stderr
     assert json.loads((tmp_path / "out" / "pear.json").read_text())["orbifold"]["cones"] == cones
+
+
+def test_the_best_suggestion_is_used(pear: Path, tmp_path: Path) -> None:
+    """No signature and no cones: the first of what core suggests; with a signature the cones for that one."""
+    for words, orbifold in (([], None), (["--cones", "auto", "--orbifold", "632"], "632")):
+        out = tmp_path / f"out {orbifold}"
+        done = run(pear, *words, "--output", out)
+        assert done.returncode == 0, done.stderr
+        layout = np.load(out / "pear.npz")  # Blender keeps 32 bits of each coordinate
+        best = core.suggest_cones(layout["vertices"], layout["triangles"], orbifold)[0]
+        report = check_files(out, "pear", best.signature, list(best.cones), suggested=True)
+        assert report["suggested"]["predicted"] == pytest.approx(best.predicted, rel=1e-3)
+        assert report["suggested"]["measured"] == best.measured
+        how = "measured" if best.measured else "predicted"
+        assert f"the cones were suggested: {how} area spread {best.predicted:.2f}" in done.stdout
+
+
+def test_cones_without_a_signature_are_those_of_442(pear: Path, tmp_path: Path) -> None:
+    done = run(pear, "--cones", "0,100,250", "--output", tmp_path / "out")
+    assert done.returncode == 0 and "suggested" not in done.stdout
+    check_files(tmp_path / "out", "pear", "442", [0, 100, 250])
 
 
 def test_certified_uvs_are_kept_where_the_whole_sphere_is_too_coarse(tmp_path: Path) -> None:
@@ -180,7 +206,7 @@ def test_creature(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     report = json.loads((tmp_path / "out" / "creature.json").read_text())
     cones = [cone["vertex"] for cone in report["orbifold"]["cones"]]
-    check_files(tmp_path / "out", "creature", "442", cones)
+    check_files(tmp_path / "out", "creature", report["orbifold"]["signature"], cones, suggested=True)
     assert 15_000 < report["mesh"]["vertices"] < 25_000
     assert report["mesh"]["components"] == 1 and report["mesh"]["genus"] == 0
 
@@ -191,13 +217,13 @@ ROWS = [(grids.disk, "4*2", 2), (grids.disk, "*432", 3), (grids.disk, "*237", 3)
 
 @pytest.mark.parametrize(("make", "signature", "n_cones"), ROWS, ids=[row[1] for row in ROWS])
 def test_other_surfaces(tmp_path: Path, make, signature: str, n_cones: int) -> None:
-    """Mirrors, handles and cross-caps, cones and corners by themselves."""
+    """Mirrors, handles and cross-caps, cones and corners suggested."""
     mesh = write_off(tmp_path / "mesh.off", *make())
     done = run(mesh, "--orbifold", signature, "--output", tmp_path / "out")
     assert done.returncode == 0, done.stderr
     cones = [cone["vertex"] for cone in json.loads((tmp_path / "out" / "mesh.json").read_text())["orbifold"]["cones"]]
     assert len(cones) == n_cones
-    report = check_files(tmp_path / "out", "mesh", signature, cones)
+    report = check_files(tmp_path / "out", "mesh", signature, cones, suggested=n_cones > 0)
     assert [cone["mirror"] for cone in report["orbifold"]["cones"]] == [
         number >= interior_orders(signature) for number in range(n_cones)
     ]
@@ -262,6 +288,8 @@ FAILURES = {
     "number of cones": (sphere_mesh, ["--cones", "1,2"], "cones"),
     "cones not numbers": (sphere_mesh, ["--cones", "1,2,x"], "--cones 1,2,x"),
     "orders": (sphere_mesh, ["--cones", "1,2,3", "--orders", "5,5,5"], "order"),
+    "orders of suggested cones": (sphere_mesh, ["--orders", "6,3,2"], "4,4,2 in any sequence"),
+    "no cones and open": (open_sphere, ["--orbifold", "442"], "open|hole|boundary"),
     "unknown option": (sphere_mesh, ["--colour", "blue"], "--colour"),
     "unknown weights": (sphere_mesh, ["--weights", "lead"], "lead"),
 }

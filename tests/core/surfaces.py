@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A mesh for any signature and picks on it as `./build.sh run --cones auto` makes them; and those parts of the add-on
-that need no bpy, as a package without Blender."""
+"""A mesh for any signature and picks on it; and those parts of the add-on that need no bpy, as a package without
+Blender."""
 
 import importlib
 import sys
 import types
 
+import picks
 from conftest import CHECKOUT
 from conway import features
 from families import MESHES, mesh_named
-
-import core
 
 
 def bare(name):
@@ -29,5 +28,5 @@ def surface_for(signature):
 
 
 def picks_for(mesh, signature):
-    """As `./build.sh run --cones auto` does."""
-    return bare("headless.automatic").automatic_cones(*mesh, core.parse_signature(signature))
+    """Spread out without regard to what they cost (tests/core/picks.py), so that the embedding alone is tested."""
+    return picks.picks_for(*mesh, features(signature))

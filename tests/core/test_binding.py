@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""binding.py says what orbifold.h says: a C compiler and the linker are asked."""
+"""binding.py says what the two headers say: a C compiler and the linker are asked."""
 
 import re
 import shutil
@@ -12,6 +12,10 @@ import core
 from core import binding
 
 HEADER = CHECKOUT / "native" / "include" / "orbifold.h"
+CONES_HEADER = HEADER.with_name("orbifold_cones.h")  # includes the other one
+HEADERS = "".join(
+    re.sub(r"/\*.*?\*/", "", path.read_text(), flags=re.DOTALL) for path in (HEADER, CONES_HEADER)
+)  # without comments
 STRUCTURES = {
     "orb_error": binding.Error,
     "orb_mesh_arrays": binding.MeshArrays,
@@ -19,6 +23,9 @@ STRUCTURES = {
     "orb_signature_info": binding.SignatureInfo,
     "orb_view": binding.View,
     "orb_report": binding.Report,
+    "orb_polygon": binding.Polygon,
+    "orb_suggest_request": binding.SuggestRequest,
+    "orb_suggestion": binding.Suggestion,
 }
 CONSTANTS = {
     "ORB_OK": binding.OK,
@@ -32,6 +39,9 @@ CONSTANTS = {
     "ORB_WEIGHTS_MEAN_VALUE": binding.WEIGHTS["mean-value"],
     "ORB_WEIGHTS_UNIFORM": binding.WEIGHTS["uniform"],
     "ORB_WEIGHTS_GIVEN": binding.WEIGHTS_GIVEN,
+    "ORB_SYMMETRY_PLANE": binding.SYMMETRY_PLANE,
+    **{f"ORB_SYMMETRY_{name.upper()}": number for name, number in binding.SYMMETRIES.items()},
+    **{f"ORB_HOLES_{name.upper()}": number for name, number in binding.HOLES.items()},
     **{f"ORB_CHART_{name.upper()}": number for name, number in binding.CHARTS.items()},
 }
 
@@ -44,13 +54,13 @@ def ask_compiler(folder, expressions):
     lines = "\n".join(f'printf("%ld\\n", (long)({expression}));' for expression in expressions)
     source = folder / "ask.c"
     source.write_text(
-        f'#include <stddef.h>\n#include <stdio.h>\n#include "{HEADER}"\nint main(void) {{\n{lines}\nreturn 0; }}\n'
+        f'#include <stddef.h>\n#include <stdio.h>\n#include "{CONES_HEADER}"\nint main(void) {{\n{lines}\nreturn 0; }}\n'
     )
     subprocess.run([compiler, "-std=c11", "-o", folder / "ask", source], check=True)
     return [int(line) for line in subprocess.check_output([folder / "ask"], text=True).split()]
 
 
-def test_structures_have_the_header_s_layout(tmp_path):
+def test_structures_have_the_headers_layout(tmp_path):
     ours, expressions = [], []
     for name, structure in STRUCTURES.items():
         expressions.append(f"sizeof({name})")
@@ -63,10 +73,9 @@ def test_structures_have_the_header_s_layout(tmp_path):
     assert ours == [(what, value) for (what, _), value in zip(ours, theirs)]
 
 
-def test_structures_have_every_field_of_the_header():
-    text = re.sub(r"/\*.*?\*/", "", HEADER.read_text(), flags=re.DOTALL)
+def test_structures_have_every_field_of_the_headers():
     for name, structure in STRUCTURES.items():
-        body = re.search(rf"typedef struct {name} {{(.*?)}} {name};", text, re.DOTALL).group(1)
+        body = re.search(rf"typedef struct {name} {{(.*?)}} {name};", HEADERS, re.DOTALL).group(1)
         fields = [
             re.search(r"(\w+)\s*(\[\w+\])?$", part.strip()).group(1)
             for line in body.split(";")
@@ -76,18 +85,18 @@ def test_structures_have_every_field_of_the_header():
         assert [field for field, *_ in structure._fields_] == fields, name
 
 
-def test_constants_are_the_header_s(tmp_path):
+def test_constants_are_the_headers(tmp_path):
     theirs = ask_compiler(tmp_path, CONSTANTS)
     assert dict(zip(CONSTANTS, theirs)) == CONSTANTS
-    charts = set(re.findall(r"\bORB_CHART_\w+", HEADER.read_text()))
-    assert charts == {name for name in CONSTANTS if name.startswith("ORB_CHART_")}
+    for prefix in ("ORB_CHART_", "ORB_HOLES_", "ORB_SYMMETRY_"):
+        theirs = set(re.findall(rf"\b{prefix}\w+", HEADERS))
+        assert theirs == {name for name in CONSTANTS if name.startswith(prefix)}
 
 
-def test_every_function_of_the_header_is_declared_with_its_arguments():
-    text = re.sub(r"/\*.*?\*/", "", HEADER.read_text(), flags=re.DOTALL)
+def test_every_function_of_the_headers_is_declared_with_its_arguments():
     declared = {
         name: 0 if arguments.strip() == "void" else arguments.count(",") + 1
-        for name, arguments in re.findall(r"ORB_API [^;(]*?\b(orb_\w+)\(([^)]*)\);", text)
+        for name, arguments in re.findall(r"ORB_API [^;(]*?\b(orb_\w+)\(([^)]*)\);", HEADERS)
     }
     assert declared == {name: len(arguments) for name, (_, arguments) in binding.PROTOTYPES.items()}
 

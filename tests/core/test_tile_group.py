@@ -3,7 +3,6 @@
 
 import numpy as np
 import pytest
-import shapes
 import surfaces
 
 import core
@@ -61,21 +60,3 @@ def test_rows_that_agree_are_one_however_they_are_rounded():
     rows = np.repeat(np.random.default_rng(3).normal(size=(400, 9)), 5, axis=0)
     noisy = rows + np.random.default_rng(4).normal(scale=1e-12, size=rows.shape)
     assert len(distinct(noisy, 1e-3)) == 400
-
-
-def test_picks_by_themselves_are_even_and_repeatable():
-    automatic = surfaces.bare("headless.automatic")
-    mesh = shapes.disk(24)
-    picks = surfaces.picks_for(mesh, "53*2222")
-    assert picks == surfaces.picks_for(mesh, "53*2222") and len(set(picks)) == 6
-    loop = core.topology_of(mesh[1]).loops[0]
-    assert not set(picks[:2]) & set(loop.tolist()) and set(picks[2:]) <= set(loop.tolist())
-    at = [loop.tolist().index(v) for v in picks[2:]]
-    along = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(mesh[0][loop], axis=0), axis=1))])
-    total = along[-1] + np.linalg.norm(mesh[0][loop[-1]] - mesh[0][loop[0]])
-    steps = np.diff([*along[at], along[at[0]] + total]) % total
-    assert np.abs(steps / total - 0.25).max() < 0.03
-    with pytest.raises(surfaces.bare("headless.errors").RunError, match="boundary loop"):
-        automatic.automatic_cones(*mesh, core.parse_signature("*2222" + "2" * 200))
-    with pytest.raises(surfaces.bare("headless.errors").RunError, match="mirrors"):
-        automatic.automatic_cones(*mesh, core.parse_signature("*22*22"))

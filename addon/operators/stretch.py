@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Show Predicted Stretch: what the conformal map with the present cones does to lengths, as attributes of the mesh."""
+
+from __future__ import annotations
+
+import math
+
+import bpy
+import numpy as np
+
+from .. import arrangement, blender_mesh, cones, core, properties
+from .jobs import mesh_problem, report_failure
+
+ATTRIBUTE = "orbifold_stretch"  # log of the factor by which lengths grow
+COLOUR = "Orbifold Stretch"
+FULL = math.log(4)  # lengths four times those of the mean, or a quarter of them, have the full colour
+SMALL, LARGE = (0.02, 0.13, 0.75), (0.75, 0.03, 0.03)  # blue, red; linear
+
+
+def stretch_problem(context: bpy.types.Context) -> str | None:
+    problem = mesh_problem(context)
+    if problem is None and not properties.default_signature(context.active_object.data):
+        problem = "The mesh has no cones: use Suggest Cones and place some first"
+    return problem
+
+
+def colours_of(scale: np.ndarray) -> np.ndarray:
+    """(n, 4) linear: blue where lengths shrink, white where they stay, red where they grow."""
+    amount = np.clip(scale / FULL, -1.0, 1.0)[:, None]
+    full = np.where(amount < 0, SMALL, LARGE)
+    return np.column_stack([1 + np.abs(amount) * (full - 1), np.ones(len(scale))])
+
+
+class MESH_OT_orbifold_show_stretch(bpy.types.Operator):
+    bl_idname = "mesh.orbifold_show_stretch"
+    bl_label = "Show Predicted Stretch"
+    bl_description = (
+        "Colour the mesh by how much the conformal map with its cones stretches lengths: blue where the layout is small, "
+        f"red where it is large, white between. Written to the attributes {ATTRIBUTE} and {COLOUR}"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        problem = stretch_problem(context)
+        if problem is not None:
+            cls.poll_message_set(problem)
+        return problem is None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        obj = context.active_object
+        mesh = obj.data
+        with blender_mesh.object_mode(obj):
+            arrays = blender_mesh.read_mesh(mesh)
+            try:
+                prediction = _predict(mesh, arrays)
+                for name, kind in ((ATTRIBUTE, "FLOAT"), (COLOUR, "FLOAT_COLOR")):
+                    blender_mesh.check_attribute(mesh, name, kind)
+            except (core.OrbifoldError, blender_mesh.BlenderMeshError) as error:
+                report_failure(self, context, arrays, error)
+                return {"CANCELLED"}
+            blender_mesh.write_float_attribute(mesh, ATTRIBUTE, prediction.scale)
+            blender_mesh.write_vertex_colour(mesh, COLOUR, colours_of(prediction.scale))
+        shown = _show_colours(context)
+        self.report({"INFO"}, f"Predicted area spread {prediction.spread:.2f}. {shown}")
+        return {"FINISHED"}
+
+
+def _predict(mesh: bpy.types.Mesh, arrays: blender_mesh.MeshArrays) -> core.Prediction:
+    surface, picked = core.topology_of(arrays.triangles), [cone.vertex for cone in cones.read_cones(mesh)]
+    signature = properties.default_signature(mesh)
+    return core.predict(
+        *(arrays.vertices, arrays.triangles, signature, arrangement.in_sequence(picked, surface, signature)),
+        holes=mesh.orbifold.holes,
+    )
+
+
+def _show_colours(context: bpy.types.Context) -> str:
+    """Solid shading shows attributes from now on; other kinds of shading are left as they are."""
+    space = context.space_data
+    if space is not None and space.type == "VIEW_3D" and space.shading.type == "SOLID":
+        space.shading.color_type = "VERTEX"
+        return "Blue is small in the layout, red is large."
+    return "Solid shading with the colour Attribute shows it: blue is small in the layout, red is large."
+
+
+CLASSES = (MESH_OT_orbifold_show_stretch,)
