@@ -7,7 +7,10 @@
 #include "assignment.h"
 
 static const double pi = 3.14159265358979323846;
-static const double worthwhile = 1e-4; /* of the value: what a move must promise */
+static const double worthwhile = 3e-4; /* of the value: what a move must promise */
+static const double shared = 1.3;      /* a vertex whose column is there, or will be, is as good as one that promises so
+                                          many times more: it costs nothing */
+static const double most_bytes = 5e8;  /* of columns that nobody stands on and that may still be offered */
 enum { MOST_ROUNDS = 40 };
 
 typedef struct offer {
@@ -26,6 +29,7 @@ typedef struct walk {
     int32_t *stamp;  /* [n_vertices] the search that last met a vertex */
     int32_t *queue;  /* [n_vertices] */
     int32_t stamps;
+    bool *known; /* [n_vertices] the column is there, or is needed in this round */
 } walk;
 
 /* --- the form ---------------------------------------------------------------------------------------------------- */
@@ -90,8 +94,10 @@ static void consider(const walk *w, const orb_descent *d, int32_t slot, int32_t 
     if (!ground_place(w->ground, d->slots[slot].kind, vertex, &p) || is_taken(w, d, slot, &p))
         return;
     const double distance = distance_between(w->ground->mesh, now->vertex[0], vertex), charge = d->slots[slot].charge;
-    const double change = 2 * charge * (slope(w, d, &p) - from) + charge * charge * p.n * dipole(w, distance) +
-                          ground_penalty(w->ground, &p) - ground_penalty(w->ground, now);
+    double change = 2 * charge * (slope(w, d, &p) - from) + charge * charge * p.n * dipole(w, distance) +
+                    ground_penalty(w->ground, &p) - ground_penalty(w->ground, now);
+    if (change < 0 && w->known[vertex])
+        change *= shared;
     if (change < best->change)
         *best = (offer){p, change, distance};
 }
@@ -140,12 +146,21 @@ static orb_status require(walk *w, bool offers, double fraction, orb_error *erro
 }
 
 static void drop_columns(walk *w, bool *wanted) {
-    memset(wanted, 0, (size_t)w->ground->mesh->n_vertices);
+    const int32_t n_vertices = w->ground->mesh->n_vertices;
+    double bytes = 0;
+    for (int32_t v = 0; v < n_vertices; v++) {
+        w->known[v] = w->columns->of[v] != NULL;
+        bytes += w->known[v] ? (double)n_vertices * sizeof **w->columns->of : 0;
+    }
+    if (bytes <= most_bytes)
+        return;
+    memset(wanted, 0, (size_t)n_vertices);
     for (int32_t k = 0; k < w->n; k++)
         for (int32_t i = 0; i < w->descents[k].n_slots && !w->descents[k].done; i++)
             for (int32_t a = 0; a < w->descents[k].places[i].n; a++)
                 wanted[w->descents[k].places[i].vertex[a]] = true;
     columns_keep(w->columns, wanted);
+    memcpy(w->known, wanted, (size_t)n_vertices);
 }
 
 static void make_offers(walk *w) {
@@ -158,6 +173,8 @@ static void make_offers(walk *w) {
             if (!d->pinned[i])
                 *one = find_offer(w, d, i);
             any = any || one->place.n > 0;
+            for (int32_t a = 0; a < one->place.n; a++)
+                w->known[one->place.vertex[a]] = true;
         }
         d->done = d->done || !any;
     }
@@ -188,6 +205,8 @@ static orb_status run_rounds(walk *w, bool *wanted, orb_error *error) {
     orb_status status = require(w, false, 0.4, error);
     for (int32_t k = 0; k < w->n && status == ORB_OK; k++)
         w->descents[k].value = evaluate(w, w->descents + k);
+    if (status == ORB_OK)
+        drop_columns(w, wanted);
     for (int round = 0; round < MOST_ROUNDS && status == ORB_OK; round++) {
         make_offers(w);
         bool all_done = true;
@@ -212,8 +231,9 @@ orb_status descent_run(const orb_ground *ground, orb_columns *columns, int32_t n
     w.start = calloc((size_t)n + 1, sizeof *w.start);
     w.stamp = calloc(room, sizeof *w.stamp);
     w.queue = malloc(room * sizeof *w.queue);
+    w.known = calloc(room, sizeof *w.known);
     orb_status status = error_memory(error);
-    if (!wanted || !w.start || !w.stamp || !w.queue)
+    if (!wanted || !w.start || !w.stamp || !w.queue || !w.known)
         goto done;
     for (int32_t k = 0; k < n; k++)
         w.start[k + 1] = w.start[k] + descents[k].n_slots;
@@ -226,6 +246,7 @@ done:
     free(w.start);
     free(w.stamp);
     free(w.queue);
+    free(w.known);
     free(w.offers);
     free(w.needed);
     return status;

@@ -228,7 +228,12 @@ orb_status plan_list_cones(orb_plan *plan, const orb_ground *ground, const int32
         hand_out_in_turn(collect(plan, ground, loop_of[m], found), found, s->orders + first, plan->cones + first);
     }
     free(found);
-    if (plan->n_cones < LONG_WALK || plan->n_cones > s->n_cones || s->n_mirrors + s->n_crosscaps + s->n_handles > 0)
+    return ORB_OK;
+}
+
+orb_status plan_shorten_walk(orb_plan *plan, const orb_mesh *mesh, orb_error *error) {
+    const orb_signature *s = plan->signature;
+    if (plan->n_cones < LONG_WALK || s->n_mirrors + s->n_crosscaps + s->n_handles > 0)
         return ORB_OK;
-    return tour_shorten(ground->mesh, plan->n_cones, plan->cones, s->orders, error);
+    return tour_shorten(mesh, plan->n_cones, plan->cones, s->orders, error);
 }

@@ -40,9 +40,11 @@ orb_status plan_place(orb_plan *plan, const orb_ground *ground, const orb_option
 
 orb_descent plan_descent(orb_plan *plan, double radius);
 
-/* Places -> cones in the signature's sequence: mirror corners as they follow along the boundary, cones on a sphere, four or
- * more, in a short walk. */
+/* Places -> cones in the signature's sequence, mirror corners as they follow along the boundary. */
 orb_status plan_list_cones(orb_plan *plan, const orb_ground *ground, const int32_t *loop_of, orb_error *error);
+
+/* On a sphere, whose cut runs through the cones in turn, four or more are put into the sequence of a short walk. */
+orb_status plan_shorten_walk(orb_plan *plan, const orb_mesh *mesh, orb_error *error);
 
 static inline orb_charges plan_charges(const orb_plan *plan) {
     const orb_signature *s = plan->signature;

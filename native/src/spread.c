@@ -6,9 +6,9 @@
 #include <string.h>
 
 static const double pi = 3.14159265358979323846;
-enum { MOST_STEPS = 24 };                                         /* towards the fixed point */
-static const double fixed_point = 1e-4;                           /* relative to u */
-static const double least_step = 0.02;                            /* of the relaxation */
+enum { MOST_STEPS = 16 };                                         /* towards the fixed point */
+static const double fixed_point = 3e-4;                           /* relative to u */
+static const double least_step = 0.02, most_step = 1.5;           /* of the relaxation */
 static const double least_cotangent = 1e-3, most_cotangent = 1e6; /* where the Laplacian is not definite to rounding */
 
 /* --- W and G ----------------------------------------------------------------------------------------------------- */
@@ -191,8 +191,7 @@ static void scaled_areas(const orb_spread *spread, double euler, const double *u
 }
 
 /* u += step * residual, where residual = start + image - u, and the step is Aitken's, as Irons and Tuck (1969) have it for
- * vectors. For a positive Euler characteristic it is at most one: two cones leave a dilation free, along which there is
- * nothing to hold it. */
+ * vectors. It is bounded, as two cones leave a dilation free, along which there is nothing to hold it. */
 static void relax(const orb_spread *spread, relaxation *one, const double *image, double *u) {
     const double *area = spread->shape.area;
     double size = 0, rest = 0, turn = 0, change = 0;
@@ -206,7 +205,7 @@ static void relax(const orb_spread *spread, relaxation *one, const double *image
     }
     one->done = !(rest > fixed_point * fixed_point * size);
     if (!one->first && change > 0)
-        one->step = fmin(fmax(-one->step * turn / change, least_step), 1);
+        one->step = fmin(fmax(-one->step * turn / change, least_step), most_step);
     one->first = false;
     for (int32_t v = 0; v < spread->mesh->n_vertices && rest < INFINITY; v++)
         u[v] += one->step * one->previous[v];

@@ -13,9 +13,13 @@
 #include "topology.h"
 #include "usual.h"
 
-static const double most_sampled = 4e6; /* candidates times vertices */
-static const double promising = 0.9;    /* of the best spread so far, for a tile that is not conformal */
-enum { FEWEST_CANDIDATES = 60, MOST_CANDIDATES = 160 };
+static const double most_sampled = 2.5e6; /* candidates times vertices */
+static const double promising = 0.9;      /* of the best spread so far, for a tile that is not conformal */
+enum {
+    FEWEST_CANDIDATES = 60,
+    MOST_CANDIDATES = 120,
+    MOST_EMBEDDED = 200000 /* vertices, where nobody asked for a signature that has to be embedded */
+};
 
 struct orb_suggestions {
     int32_t n;
@@ -78,8 +82,10 @@ static orb_status list_signatures(orb_study *study, orb_error *error) {
     if (!study->plans)
         return error_memory(error);
     for (int32_t k = 0; k < n && status == ORB_OK; k++)
-        status = request->n_signatures > 0 ? add_plan(study, request->signatures[k], true, error)
-                                           : add_plan(study, usual.text[k], k < usual.n_sure, error);
+        if (request->n_signatures > 0)
+            status = add_plan(study, request->signatures[k], true, error);
+        else if (k < usual.n_sure || study->input->n_vertices <= MOST_EMBEDDED)
+            status = add_plan(study, usual.text[k], k < usual.n_sure, error);
     return status;
 }
 
@@ -334,6 +340,9 @@ static orb_status measure_plans(orb_study *study, orb_error *error) {
         n += plan->placed && !plan->conformal_tile;
     }
     orb_status status = ORB_OK;
+    for (int32_t k = 0; k < study->n && status == ORB_OK; k++)
+        if (study->plans[k]->placed)
+            status = plan_shorten_walk(study->plans[k], study->input, error);
     for (int32_t k = 0; k < study->n && status == ORB_OK; k++)
         if (study->plans[k]->placed && !study->plans[k]->conformal_tile) {
             part progress = {&study->monitor, 0.85 + 0.15 * done / n, 0.85 + 0.15 * (done + 1) / n};
