@@ -55,7 +55,7 @@ static struct {
     sem_t over; /* posted when the stand-in is about to return */
     orb_status given;
 } fake;
-static atomic_int freed; /* embeddings and suggestions; apart from the above, since a detached thread may free one late */
+static atomic_int freed; /* embeddings and suggestions; apart from the above: a detached thread may free one late */
 
 static void fake_reset(void) {
     memset(&fake, 0, sizeof fake);
