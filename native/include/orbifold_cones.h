@@ -26,6 +26,7 @@ typedef enum orb_symmetry {
 typedef struct orb_suggest_request {
     int32_t n_signatures;          /* 0: what is usual for the mesh's topology, docs/mathematics.md, section 8 */
     const char *const *signatures; /* [n_signatures] */
+    bool flat; /* of the usual ones only those of the plane, where there are any: an image repeats over their tile */
     int32_t n_fixed;
     const int32_t *fixed;    /* [n_fixed] vertices that are cones (on a mirror: corners) of every suggestion */
     const double *keep_away; /* [n_vertices] >= 0: what a cone there costs, in squared log area; infinite: never there.
@@ -42,16 +43,19 @@ typedef struct orb_suggestion {
     int32_t n_cones;
     const int32_t *cones;  /* [n_cones] in the signature's sequence, as orb_embed takes them */
     const int32_t *orders; /* [n_cones] that sequence */
-    double predicted; /* spread of log area: what a conformal map onto the signature's own tile would have, or, where
-                              that tile is not conformal (`measured`), what the embedding has */
-    double conformal; /* spread of log area of the conformal map with these cones, by which they were chosen */
-    bool measured;    /* four hyperbolic cones and more: the tile is a fixed one, so the embedding was made */
-    bool symmetric;   /* the cones are their own mirror image */
+    double predicted; /* standard deviation of log area of the conformal map, which the embedding will nearly have with
+                         conformal weights; if `measured`: twice that of the logarithms of the embedding's singular values,
+                         which is the same for a conformal map and counts distorted angles, too */
+    double conformal; /* standard deviation of log area of a conformal map with these cones */
+    bool measured;  /* four hyperbolic cones and more: the tile is a fixed one that is not conformal, so the cones were
+                         chosen by `conformal`, but the suggestion is ranked by the embedding */
+    bool symmetric; /* the cones are their own mirror image */
 } orb_suggestion;
 
 /* For each signature the best cones, the least `predicted` first. A signature whose embedding has to be measured and
  * fails is left out, as is one with fewer cones than are fixed, unless that leaves nothing. Of the usual signatures,
- * those with many hyperbolic cones are embedded only where they promise more than three or four cones.
+ * those with many hyperbolic cones are embedded only where the others leave a spread above 1 and they promise less, on meshes
+ * of up to 200,000 vertices.
  * Errors: mesh_create's and orb_embed's for a mesh that is not of the signature's topology; ORB_BAD_SIGNATURE and its
  * like; ORB_CONE_COUNT (too few vertices, or too many fixed cones); ORB_BAD_CONE (a fixed one that is not free to be
  * one); ORB_BAD_WEIGHT (keep_away is negative or not a number; vertices); ORB_CANCELLED. */

@@ -13,12 +13,12 @@ typedef struct search {
     int32_t n_slots;
     const orb_slot *slots;
     double constant;
-    bool *used;       /* [options->n] */
-    int32_t *pinned;  /* [n_slots] the fixed option of a slot; -1: free */
-    int32_t *choice;  /* [n_slots] that is being tried */
-    double *linear;   /* [(n_slots + 1) * options->n] by depth: linear terms of each option given the slots before */
-    orb_site *places; /* [n_slots] */
-    int32_t *best;    /* [n_slots] the caller's */
+    bool *used;      /* [options->n] */
+    int32_t *pinned; /* [n_slots] the fixed option of a slot; -1: free */
+    int32_t *choice; /* [n_slots] that is being tried */
+    double *linear;  /* [(n_slots + 1) * options->n] by depth: linear terms of each option given the slots before */
+    orb_site *sites; /* [n_slots] */
+    int32_t *best;   /* [n_slots] the caller's */
     double best_value;
     int32_t n_fixings; /* ways of giving the fixed options to slots that were tried */
     bool ordered;      /* the sequence of corners matters */
@@ -48,14 +48,14 @@ static bool same_cycle(int32_t n, const corner *a, const orb_slot *b) {
     return false;
 }
 
-bool assignment_in_sequence(const orb_ground *ground, int32_t n_slots, const orb_slot *slots, const orb_site *places) {
+bool assignment_in_sequence(const orb_ground *ground, int32_t n_slots, const orb_slot *slots, const orb_site *sites) {
     enum { AT_ONCE = 256 };
     corner few[AT_ONCE], *corners = n_slots <= AT_ONCE ? few : malloc((size_t)n_slots * sizeof *corners);
     bool fits = corners != NULL;
     for (int32_t i = 0, j; i < n_slots && fits; i = j) {
         j = i;
         while (j < n_slots && slots[j].kind == slots[i].kind) {
-            const int32_t place = ground->boundary->place[places[j].vertex[0]];
+            const int32_t place = ground->boundary->place[sites[j].vertex[0]];
             corners[j - i] = (corner){place, slots[j].order};
             j++;
         }
@@ -89,8 +89,8 @@ static bool in_sequence(search *s, const int32_t *choice) {
     if (!s->ordered)
         return true;
     for (int32_t i = 0; i < s->n_slots; i++)
-        s->places[i] = s->options->list[choice[i]].place;
-    return assignment_in_sequence(s->ground, s->n_slots, s->slots, s->places);
+        s->sites[i] = s->options->list[choice[i]].site;
+    return assignment_in_sequence(s->ground, s->n_slots, s->slots, s->sites);
 }
 
 /* --- values ------------------------------------------------------------------------------------------------------ */
@@ -231,14 +231,14 @@ static bool put_in_sequence(search *s) {
             const int32_t a = s->choice[i], b = s->choice[j];
             if (s->slots[i].kind != s->slots[j].kind || ground_kind_loop(s->slots[i].kind) < 0)
                 continue;
-            if (place[s->options->list[a].place.vertex[0]] > place[s->options->list[b].place.vertex[0]]) {
+            if (place[s->options->list[a].site.vertex[0]] > place[s->options->list[b].site.vertex[0]]) {
                 exchange_two(s, i, j);
             }
         }
     return in_sequence(s, s->choice);
 }
 
-/* Swaps the places of two slots of a kind where that gains. */
+/* Swaps the sites of two slots of a kind where that gains. */
 static bool swap_pairs(search *s) {
     bool gained = false;
     for (int32_t i = 0; i < s->n_slots; i++)
@@ -304,7 +304,7 @@ static void try_from(search *s, int32_t start) {
     keep_if_better(s, value_of(s, s->choice), s->choice);
 }
 
-/* --- fixed places ------------------------------------------------------------------------------------------------ */
+/* --- fixed sites ------------------------------------------------------------------------------------------------ */
 
 static void search_free(search *s) {
     if (count_choices(s) <= most_choices) {
@@ -352,9 +352,9 @@ orb_status assignment_find(const orb_ground *ground, const orb_options *options,
     s.pinned = malloc(k * sizeof *s.pinned);
     s.choice = malloc(k * sizeof *s.choice);
     s.linear = malloc(k * n * sizeof *s.linear);
-    s.places = malloc(k * sizeof *s.places);
+    s.sites = malloc(k * sizeof *s.sites);
     s.ordered = sequence_matters(n_slots, slots);
-    const bool room = s.used && s.pinned && s.choice && s.linear && s.places;
+    const bool room = s.used && s.pinned && s.choice && s.linear && s.sites;
     for (int32_t i = 0; i < n_slots && room; i++)
         s.pinned[i] = -1;
     if (room && n_slots == 0)
@@ -366,6 +366,6 @@ orb_status assignment_find(const orb_ground *ground, const orb_options *options,
     free(s.pinned);
     free(s.choice);
     free(s.linear);
-    free(s.places);
+    free(s.sites);
     return room ? ORB_OK : error_memory(error);
 }

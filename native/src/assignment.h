@@ -1,4 +1,4 @@
-/* The best places for the slots, among the options. SPDX-License-Identifier: GPL-3.0-or-later */
+/* The best sites for the slots, among the options. SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef ORB_ASSIGNMENT_H
 #define ORB_ASSIGNMENT_H
 
@@ -12,7 +12,7 @@
 orb_status assignment_find(const orb_ground *ground, const orb_options *options, double constant, int32_t n_slots,
                            const orb_slot *slots, int32_t *choice, double *value, orb_error *error);
 
-/* Whether places[n_slots] respect the sequence of corners along the loops. */
-bool assignment_in_sequence(const orb_ground *ground, int32_t n_slots, const orb_slot *slots, const orb_site *places);
+/* Whether sites[n_slots] respect the sequence of corners along the loops. */
+bool assignment_in_sequence(const orb_ground *ground, int32_t n_slots, const orb_slot *slots, const orb_site *sites);
 
 #endif

@@ -8,13 +8,16 @@
 
 static const double pi = 3.14159265358979323846;
 static const double worthwhile = 3e-4; /* of the value: what a move must promise */
-static const double shared = 1.3;      /* a vertex whose column is there, or will be, is as good as one that promises so
+static const double worth_a_look = 3e-3,
+                    cheap = 0.25;     /* at the end: the same of a move to a neighbour, and how much of the
+                                                          dipole's estimate is believed there (docs/decisions.md) */
+static const double shared = 1.3;     /* a vertex whose column is there, or will be, is as good as one that promises so
                                           many times more: it costs nothing */
-static const double most_bytes = 5e8;  /* of columns that nobody stands on and that may still be offered */
+static const double most_bytes = 5e8; /* of columns that nobody stands on and that may still be offered */
 enum { MOST_ROUNDS = 40 };
 
 typedef struct offer {
-    orb_site place;
+    orb_site site;
     double change, distance; /* promised change of the value; how far away */
 } offer;
 
@@ -24,7 +27,7 @@ typedef struct walk {
     int32_t n;
     orb_descent *descents;
     int32_t *start;  /* [n + 1] of each descent's offers */
-    offer *offers;   /* [start[n]] place.n = 0: none */
+    offer *offers;   /* [start[n]] site.n = 0: none */
     int32_t *needed; /* [2 * start[n]] vertices whose columns are */
     int32_t *stamp;  /* [n_vertices] the search that last met a vertex */
     int32_t *queue;  /* [n_vertices] */
@@ -37,13 +40,13 @@ typedef struct walk {
 static double evaluate(const walk *w, const orb_descent *d) {
     double value = w->columns->spread->constant;
     for (int32_t i = 0; i < d->n_slots; i++) {
-        const orb_site *p = d->places + i;
+        const orb_site *p = d->sites + i;
         for (int32_t a = 0; a < p->n; a++) {
             const double *column = w->columns->of[p->vertex[a]];
             double sum = 2 * w->columns->spread->pull[p->vertex[a]];
             for (int32_t j = 0; j < d->n_slots; j++)
-                for (int32_t b = 0; b < d->places[j].n; b++)
-                    sum += d->slots[j].charge * column[d->places[j].vertex[b]];
+                for (int32_t b = 0; b < d->sites[j].n; b++)
+                    sum += d->slots[j].charge * column[d->sites[j].vertex[b]];
             value += d->slots[i].charge * sum;
         }
         value += d->pinned[i] ? 0 : ground_penalty(w->ground, p);
@@ -51,14 +54,14 @@ static double evaluate(const walk *w, const orb_descent *d) {
     return value;
 }
 
-/* h at a place. */
+/* h at a site. */
 static double slope(const walk *w, const orb_descent *d, const orb_site *p) {
     double sum = 0;
     for (int32_t a = 0; a < p->n; a++) {
         sum += w->columns->spread->pull[p->vertex[a]];
         for (int32_t j = 0; j < d->n_slots; j++)
-            for (int32_t b = 0; b < d->places[j].n; b++)
-                sum += d->slots[j].charge * w->columns->of[d->places[j].vertex[b]][p->vertex[a]];
+            for (int32_t b = 0; b < d->sites[j].n; b++)
+                sum += d->slots[j].charge * w->columns->of[d->sites[j].vertex[b]][p->vertex[a]];
     }
     return sum;
 }
@@ -79,8 +82,8 @@ static double dipole(const walk *w, double distance) {
 static bool is_taken(const walk *w, const orb_descent *d, int32_t slot, const orb_site *p) {
     for (int32_t j = 0; j < d->n_slots; j++)
         for (int32_t a = 0; a < p->n && j != slot; a++)
-            for (int32_t b = 0; b < d->places[j].n; b++)
-                if (d->places[j].vertex[b] == p->vertex[a])
+            for (int32_t b = 0; b < d->sites[j].n; b++)
+                if (d->sites[j].vertex[b] == p->vertex[a])
                     return true;
     for (int32_t a = 0; a < p->n; a++)
         if (w->ground->fixed[p->vertex[a]])
@@ -90,24 +93,25 @@ static bool is_taken(const walk *w, const orb_descent *d, int32_t slot, const or
 
 static void consider(const walk *w, const orb_descent *d, int32_t slot, int32_t vertex, double from, offer *best) {
     orb_site p;
-    const orb_site *now = d->places + slot;
+    const orb_site *now = d->sites + slot;
     if (!ground_place(w->ground, d->slots[slot].kind, vertex, &p) || is_taken(w, d, slot, &p))
         return;
     const double distance = distance_between(w->ground->mesh, now->vertex[0], vertex), charge = d->slots[slot].charge;
-    double change = 2 * charge * (slope(w, d, &p) - from) + charge * charge * p.n * dipole(w, distance) +
-                    ground_penalty(w->ground, &p) - ground_penalty(w->ground, now);
+    const double cost = charge * charge * p.n * dipole(w, distance) * (d->close ? cheap : 1);
+    double change =
+        2 * charge * (slope(w, d, &p) - from) + cost + ground_penalty(w->ground, &p) - ground_penalty(w->ground, now);
     if (change < 0 && w->known[vertex])
         change *= shared;
     if (change < best->change)
         *best = (offer){p, change, distance};
 }
 
-/* The best place for a slot within its radius, over edges from where it is. */
+/* The best site for a slot within its radius, over edges from where it is. */
 static offer find_offer(walk *w, const orb_descent *d, int32_t slot) {
     const orb_mesh *mesh = w->ground->mesh;
-    const int32_t centre = d->places[slot].vertex[0];
-    const double from = slope(w, d, d->places + slot);
-    offer best = {.change = -worthwhile * fabs(d->value)};
+    const int32_t centre = d->sites[slot].vertex[0];
+    const double from = slope(w, d, d->sites + slot);
+    offer best = {.change = -(d->close ? worth_a_look : worthwhile) * fabs(d->value)};
     int32_t head = 0, tail = 0;
     w->stamps++;
     w->queue[tail++] = centre;
@@ -133,12 +137,12 @@ static offer find_offer(walk *w, const orb_descent *d, int32_t slot) {
 
 /* --- rounds ------------------------------------------------------------------------------------------------------ */
 
-/* Columns of all places of the descents that go on, and of what they are offered. */
+/* Columns of all sites of the descents that go on, and of what they are offered. */
 static orb_status require(walk *w, bool offers, double fraction, orb_error *error) {
     int32_t n = 0;
     for (int32_t k = 0; k < w->n; k++)
         for (int32_t i = 0; i < w->descents[k].n_slots && !w->descents[k].done; i++) {
-            const orb_site *p = offers ? &w->offers[w->start[k] + i].place : w->descents[k].places + i;
+            const orb_site *p = offers ? &w->offers[w->start[k] + i].site : w->descents[k].sites + i;
             for (int32_t a = 0; a < p->n; a++)
                 w->needed[n++] = p->vertex[a];
         }
@@ -157,10 +161,26 @@ static void drop_columns(walk *w, bool *wanted) {
     memset(wanted, 0, (size_t)n_vertices);
     for (int32_t k = 0; k < w->n; k++)
         for (int32_t i = 0; i < w->descents[k].n_slots && !w->descents[k].done; i++)
-            for (int32_t a = 0; a < w->descents[k].places[i].n; a++)
-                wanted[w->descents[k].places[i].vertex[a]] = true;
+            for (int32_t a = 0; a < w->descents[k].sites[i].n; a++)
+                wanted[w->descents[k].sites[i].vertex[a]] = true;
     columns_keep(w->columns, wanted);
     memcpy(w->known, wanted, (size_t)n_vertices);
+}
+
+/* From here on only neighbours are offered. */
+static void look_close(const walk *w, orb_descent *d) {
+    const orb_mesh *mesh = w->ground->mesh;
+    d->close = true;
+    for (int32_t i = 0; i < d->n_slots; i++) {
+        orb_turn turn = mesh_turn_start(mesh, d->sites[i].vertex[0]);
+        const int32_t first = turn.corner;
+        d->radius[i] = 0;
+        do {
+            d->radius[i] = fmax(d->radius[i], mesh_edge_length(mesh, turn.corner));
+            d->radius[i] = fmax(d->radius[i], mesh_edge_length(mesh, halfedge_previous(turn.corner)));
+        } while (mesh_turn(mesh, &turn) && turn.corner != first);
+        d->radius[i] *= 1 + 1e-9;
+    }
 }
 
 static void make_offers(walk *w) {
@@ -172,11 +192,14 @@ static void make_offers(walk *w) {
             *one = (offer){0};
             if (!d->pinned[i])
                 *one = find_offer(w, d, i);
-            any = any || one->place.n > 0;
-            for (int32_t a = 0; a < one->place.n; a++)
-                w->known[one->place.vertex[a]] = true;
+            any = any || one->site.n > 0;
+            for (int32_t a = 0; a < one->site.n; a++)
+                w->known[one->site.vertex[a]] = true;
         }
-        d->done = d->done || !any;
+        if (!d->done && !any && !d->close)
+            look_close(w, d);
+        else
+            d->done = d->done || !any;
     }
 }
 
@@ -185,17 +208,17 @@ static void take_offers(walk *w, int32_t k) {
     orb_descent *d = w->descents + k;
     for (int32_t i = 0; i < d->n_slots; i++) {
         const offer *one = w->offers + w->start[k] + i;
-        const orb_site before = d->places[i];
-        if (one->place.n == 0)
+        const orb_site before = d->sites[i];
+        if (one->site.n == 0)
             continue;
-        bool taken = !is_taken(w, d, i, &one->place);
-        d->places[i] = one->place;
+        bool taken = !is_taken(w, d, i, &one->site);
+        d->sites[i] = one->site;
         const double value = evaluate(w, d);
-        taken = taken && value < d->value && assignment_in_sequence(w->ground, d->n_slots, d->slots, d->places);
+        taken = taken && value < d->value && assignment_in_sequence(w->ground, d->n_slots, d->slots, d->sites);
         if (taken) {
             d->value = value;
         } else {
-            d->places[i] = before;
+            d->sites[i] = before;
             d->radius[i] = 0.5 * fmin(d->radius[i], one->distance);
         }
     }

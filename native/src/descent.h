@@ -1,4 +1,4 @@
-/* From good places to better ones nearby. SPDX-License-Identifier: GPL-3.0-or-later
+/* From good sites to better ones nearby. SPDX-License-Identifier: GPL-3.0-or-later
  *
  * With u the present log scale, the form's derivative is known at every vertex: moving cone c to d changes the value by
  *     2 s_c (h(d) - h(c)) + s_c^2 |g_d - g_c|_W^2,    h = k_0 + sum_i s_i k_i.
@@ -14,11 +14,12 @@
 typedef struct orb_descent {
     int32_t n_slots;
     const orb_slot *slots;
-    orb_site *places; /* [n_slots] in and out */
-    bool *pinned;     /* [n_slots] stays where it is */
-    double *radius;   /* [n_slots] the first one, in the mesh's unit */
-    double value;     /* out: the form's value and the penalties */
-    bool done;        /* out */
+    orb_site *sites; /* [n_slots] in and out */
+    bool *pinned;    /* [n_slots] stays where it is */
+    double *radius;  /* [n_slots] the first one, in the mesh's unit */
+    double value;    /* out: the form's value and the penalties */
+    bool close;      /* out: only neighbours are looked at by now */
+    bool done;       /* out */
 } orb_descent;
 
 orb_status descent_run(const orb_ground *ground, orb_columns *columns, int32_t n, orb_descent *descents,

@@ -117,3 +117,20 @@ orb_status distortion_measure(orb_embedding *embedding, orb_error *error) {
     free(conformal);
     return ORB_OK;
 }
+
+double distortion_spread(const orb_embedding *embedding) {
+    const double unit = unit_scale(embedding->mesh);
+    double area = 0, mean = 0, square = 0;
+    for (int32_t t = 0; t < embedding->mesh->n_triangles; t++) {
+        const affine map = triangle_map(embedding, unit, t);
+        if (!(map.area > 0))
+            continue;
+        const double large = cabs(map.a) + cabs(map.b), logs[2] = {log(large), log(map.determinant / large)};
+        area += map.area;
+        for (int k = 0; k < 2; k++) {
+            mean += map.area * logs[k] / 2;
+            square += map.area * logs[k] * logs[k] / 2;
+        }
+    }
+    return area > 0 ? 2 * sqrt(fmax(0, square / area - pow(mean / area, 2))) : 0;
+}

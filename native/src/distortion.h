@@ -12,4 +12,8 @@ orb_status distortion_measure(orb_embedding *embedding, orb_error *error);
 /* Sum over the triangles of area times J J', J the affine map of a triangle to its image: [m11, m12, m22]. */
 void distortion_covariance(const orb_embedding *embedding, double covariance[3]);
 
+/* Twice the area-weighted standard deviation of the logarithms of the singular values: for a conformal map that is the
+ * spread of log area, and for any other one more than that, by the quasi-conformal error. */
+double distortion_spread(const orb_embedding *embedding);
+
 #endif

@@ -61,22 +61,22 @@ void ground_free(orb_ground *ground) {
     free(ground);
 }
 
-bool ground_place(const orb_ground *ground, int32_t kind, int32_t vertex, orb_site *place) {
+bool ground_place(const orb_ground *ground, int32_t kind, int32_t vertex, orb_site *site) {
     const int32_t loop = ground_kind_loop(kind);
     const bool pair = ground_kind_is_pair(kind);
     const orb_reflection *reflection = ground->reflection;
     if (!(ground->penalty[vertex] < INFINITY) || boundary_loop_of(ground->boundary, vertex) != loop)
         return false;
     const int32_t image = reflection ? reflection->image[vertex] : vertex;
-    *place = (orb_site){pair ? 2 : 1, {vertex, image}};
+    *site = (orb_site){pair ? 2 : 1, {vertex, image}};
     if (image < 0 || (image != vertex) != pair)
         return false;
     return !pair || (ground->penalty[image] < INFINITY && boundary_loop_of(ground->boundary, image) == loop);
 }
 
-double ground_penalty(const orb_ground *ground, const orb_site *place) {
+double ground_penalty(const orb_ground *ground, const orb_site *site) {
     double sum = 0;
-    for (int32_t k = 0; k < place->n; k++)
-        sum += ground->penalty[place->vertex[k]];
+    for (int32_t k = 0; k < site->n; k++)
+        sum += ground->penalty[site->vertex[k]];
     return sum;
 }

@@ -1,6 +1,6 @@
 /* Where cones may be. SPDX-License-Identifier: GPL-3.0-or-later
  *
- * A place is a vertex, or, on a mesh with a mirror plane, a vertex on the plane or a pair of mirror images. Places are of
+ * A site is a vertex, or, on a mesh with a mirror plane, a vertex on the plane or a pair of mirror images. Places are of
  * kinds: inside the surface or on one boundary loop, single or a pair. */
 #ifndef ORB_GROUND_H
 #define ORB_GROUND_H
@@ -32,9 +32,9 @@ orb_status ground_create(const orb_mesh *mesh, int32_t n_given, const double *ke
                          const int32_t *fixed, orb_ground **ground, orb_error *error);
 void ground_free(orb_ground *ground);
 
-/* The place of a kind that a vertex stands for; false if it is none, or not a free one. */
-bool ground_place(const orb_ground *ground, int32_t kind, int32_t vertex, orb_site *place);
+/* The site of a kind that a vertex stands for; false if it is none, or not a free one. */
+bool ground_place(const orb_ground *ground, int32_t kind, int32_t vertex, orb_site *site);
 
-double ground_penalty(const orb_ground *ground, const orb_site *place);
+double ground_penalty(const orb_ground *ground, const orb_site *site);
 
 #endif

@@ -315,11 +315,19 @@ static orb_status job_finish(orb_job *job, orb_embedding **embedding, orb_sugges
 orb_status orb_job_finish(orb_job *job, orb_embedding **embedding, orb_error *error) {
     if (embedding)
         *embedding = NULL;
-    return job_finish(job, embedding, NULL, error);
+    const bool wrong = job && job->suggests;
+    const orb_status status = job_finish(job, embedding, NULL, error);
+    if (!wrong || status != ORB_OK)
+        return status;
+    return error_set(error, ORB_BAD_ARGUMENT, "the job suggests cones: finish it with orb_job_finish_suggest");
 }
 
 orb_status orb_job_finish_suggest(orb_job *job, orb_suggestions **suggestions, orb_error *error) {
     if (suggestions)
         *suggestions = NULL;
-    return job_finish(job, NULL, suggestions, error);
+    const bool wrong = job && !job->suggests;
+    const orb_status status = job_finish(job, NULL, suggestions, error);
+    if (!wrong || status != ORB_OK)
+        return status;
+    return error_set(error, ORB_BAD_ARGUMENT, "the job makes an embedding: finish it with orb_job_finish");
 }

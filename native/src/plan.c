@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dilation.h"
 #include "tour.h"
 
-static const double pi = 3.14159265358979323846;
-enum { LONG_WALK = 4 };
+enum { LONG_WALK = 4, LUNE_ORDER = 4 };
 
 /* Teichmueller space is a point, or the plane's, of whose lattices the least conformal energy chooses (modulus.h). */
 static bool has_conformal_tile(const orb_signature *s) {
@@ -27,17 +27,15 @@ orb_status plan_create(const char *text, orb_signature *signature, orb_plan **re
     const size_t room = (size_t)plan->n_cones + 1, length = strlen(text) + 1;
     plan->text = malloc(length);
     plan->slots = malloc(room * sizeof *plan->slots);
-    plan->places = malloc(room * sizeof *plan->places);
+    plan->sites = malloc(room * sizeof *plan->sites);
     plan->pinned = malloc(room);
     plan->radius = malloc(room * sizeof *plan->radius);
-    plan->cones = malloc(room * sizeof *plan->cones);
+    plan->cones = calloc(room, sizeof *plan->cones);
     plan->charges = malloc(room * sizeof *plan->charges);
-    if (!plan->text || !plan->slots || !plan->places || !plan->pinned || !plan->radius || !plan->cones ||
-        !plan->charges)
+    if (!plan->text || !plan->slots || !plan->sites || !plan->pinned || !plan->radius || !plan->cones || !plan->charges)
         return error_memory(error);
     memcpy(plan->text, text, length);
-    for (int32_t i = 0; i < plan->n_cones; i++)
-        plan->charges[i] = (i < signature->n_cones ? 2 : 1) * pi * (1 - 1.0 / signature->orders[i]);
+    spread_charges(signature, plan->cones, plan->charges);
     plan->value = INFINITY;
     return ORB_OK;
 }
@@ -48,7 +46,7 @@ void plan_free(orb_plan *plan) {
     free(plan->text);
     signature_free(plan->signature);
     free(plan->slots);
-    free(plan->places);
+    free(plan->sites);
     free(plan->pinned);
     free(plan->radius);
     free(plan->cones);
@@ -64,10 +62,18 @@ typedef struct crowd {
     double charge;
 } crowd;
 
+/* For a lune of a low order the form with a(u) = a is far off, as the dilation that is free is not in it; the best places are
+ * nearly those for a higher order, for the metric without the cones is one cylinder for all. */
+static double searched_charge(const orb_plan *plan, int32_t cone) {
+    const int32_t order = plan->signature->orders[cone];
+    if (order >= LUNE_ORDER || !dilation_is_free(plan->signature))
+        return plan->charges[cone];
+    return plan->charges[cone] * (1 - 1.0 / LUNE_ORDER) / (1 - 1.0 / order);
+}
+
 static bool corners_are_alike(const orb_signature *s, int32_t mirror) {
-    const int32_t *order = s->orders + s->n_cones;
     for (int32_t i = s->mirror_start[mirror]; i < s->mirror_start[mirror + 1]; i++)
-        if (order[i] != order[s->mirror_start[mirror]])
+        if (s->orders[i] != s->orders[s->mirror_start[mirror]])
             return false;
     return true;
 }
@@ -77,8 +83,8 @@ static int32_t list_crowds(const orb_plan *plan, const int32_t *loop_of, bool sy
     const orb_signature *s = plan->signature;
     int32_t n = 0;
     for (int32_t m = -1; m < s->n_mirrors; m++) {
-        const int32_t first = m < 0 ? 0 : s->n_cones + s->mirror_start[m];
-        const int32_t end = m < 0 ? s->n_cones : s->n_cones + s->mirror_start[m + 1];
+        const int32_t first = m < 0 ? 0 : s->mirror_start[m];
+        const int32_t end = m < 0 ? s->n_cones : s->mirror_start[m + 1];
         const bool sequence = m >= 0 && end - first > 3 && !corners_are_alike(s, m);
         const int32_t own = n;
         for (int32_t i = first; i < end; i++) {
@@ -86,7 +92,7 @@ static int32_t list_crowds(const orb_plan *plan, const int32_t *loop_of, bool sy
             while (c < n && (sequence || crowds[c].order != s->orders[i]))
                 c++;
             if (c == n)
-                crowds[n++] = (crowd){m < 0 ? -1 : loop_of[m], s->orders[i], 0, 0, 0, plan->charges[i]};
+                crowds[n++] = (crowd){m < 0 ? -1 : loop_of[m], s->orders[i], 0, 0, 0, searched_charge(plan, i)};
             crowds[c].n++;
             crowds[c].most_pairs = symmetric ? crowds[c].n / 2 : 0;
         }
@@ -151,7 +157,7 @@ orb_status plan_place(orb_plan *plan, const orb_ground *ground, const orb_option
         plan->n_slots = n_slots;
         memcpy(plan->slots, slots, (size_t)n_slots * sizeof *slots);
         for (int32_t i = 0; i < n_slots; i++) {
-            plan->places[i] = options->list[choice[i]].place;
+            plan->sites[i] = options->list[choice[i]].site;
             plan->pinned[i] = options->list[choice[i]].fixed;
         }
     }
@@ -164,7 +170,7 @@ orb_status plan_place(orb_plan *plan, const orb_ground *ground, const orb_option
 orb_descent plan_descent(orb_plan *plan, double radius) {
     for (int32_t i = 0; i < plan->n_slots; i++)
         plan->radius[i] = radius;
-    return (orb_descent){plan->n_slots, plan->slots, plan->places, plan->pinned, plan->radius, 0, false};
+    return (orb_descent){plan->n_slots, plan->slots, plan->sites, plan->pinned, plan->radius, 0, false, false};
 }
 
 /* --- the signature's sequence ------------------------------------------------------------------------------------ */
@@ -183,8 +189,8 @@ static int by_place(const void *a, const void *b) {
 static int32_t collect(const orb_plan *plan, const orb_ground *ground, int32_t loop, settled *found) {
     int32_t n = 0;
     for (int32_t i = 0; i < plan->n_slots; i++)
-        for (int32_t a = 0; a < plan->places[i].n && ground_kind_loop(plan->slots[i].kind) == loop; a++) {
-            const int32_t v = plan->places[i].vertex[a];
+        for (int32_t a = 0; a < plan->sites[i].n && ground_kind_loop(plan->slots[i].kind) == loop; a++) {
+            const int32_t v = plan->sites[i].vertex[a];
             found[n++] = (settled){v, plan->slots[i].order, ground->boundary->place[v]};
         }
     return n;
@@ -224,7 +230,7 @@ orb_status plan_list_cones(orb_plan *plan, const orb_ground *ground, const int32
         return error_memory(error);
     hand_out(collect(plan, ground, -1, found), found, s->orders, plan->cones);
     for (int32_t m = 0; m < s->n_mirrors; m++) {
-        const int32_t first = s->n_cones + s->mirror_start[m];
+        const int32_t first = s->mirror_start[m];
         hand_out_in_turn(collect(plan, ground, loop_of[m], found), found, s->orders + first, plan->cones + first);
     }
     free(found);
@@ -237,3 +243,5 @@ orb_status plan_shorten_walk(orb_plan *plan, const orb_mesh *mesh, orb_error *er
         return ORB_OK;
     return tour_shorten(mesh, plan->n_cones, plan->cones, s->orders, error);
 }
+
+orb_charges plan_charges(const orb_plan *plan) { return spread_charges(plan->signature, plan->cones, plan->charges); }

@@ -11,14 +11,14 @@ typedef struct orb_plan {
     orb_signature *signature; /* with a * for each hole that is a mirror */
     bool sure;                /* tried whatever it costs */
     bool conformal_tile;      /* the tile's shape is the conformal one: it has no other, or it is chosen so */
-    bool symmetric;           /* its places are of a mesh's mirror plane */
+    bool symmetric;           /* its sites are of a mesh's mirror plane */
     bool placed;
-    int32_t n_slots;  /* of the best ones so far, */
-    orb_slot *slots;  /* [n_cones] grouped by kind, */
-    orb_site *places; /* [n_cones] where they are, */
-    double value;     /* and the form there with the penalties */
-    bool *pinned;     /* [n_cones] the place is a fixed one */
-    double *radius;   /* [n_cones] */
+    int32_t n_slots; /* of the best ones so far, */
+    orb_slot *slots; /* [n_cones] grouped by kind, */
+    orb_site *sites; /* [n_cones] where they are, */
+    double value;    /* and the form there with the penalties */
+    bool *pinned;    /* [n_cones] the site is a fixed one */
+    double *radius;  /* [n_cones] */
     int32_t n_cones;
     int32_t *cones;  /* [n_cones] in the signature's sequence */
     double *charges; /* [n_cones] */
@@ -33,7 +33,7 @@ void plan_free(orb_plan *plan);
 /* Adds to wanted[kind] where the cones may have to be; loop_of[mirror]: the loops that are its mirrors. */
 void plan_want(const orb_plan *plan, const int32_t *loop_of, bool symmetric, bool *wanted);
 
-/* The best places among the options; plan->placed says if there are any. Of cones of one order some may be pairs of mirror
+/* The best sites among the options; plan->placed says if there are any. Of cones of one order some may be pairs of mirror
  * images; all ways of choosing how many are tried. */
 orb_status plan_place(orb_plan *plan, const orb_ground *ground, const orb_options *options, double constant,
                       const int32_t *loop_of, bool symmetric, orb_error *error);
@@ -46,9 +46,6 @@ orb_status plan_list_cones(orb_plan *plan, const orb_ground *ground, const int32
 /* On a sphere, whose cut runs through the cones in turn, four or more are put into the sequence of a short walk. */
 orb_status plan_shorten_walk(orb_plan *plan, const orb_mesh *mesh, orb_error *error);
 
-static inline orb_charges plan_charges(const orb_plan *plan) {
-    const orb_signature *s = plan->signature;
-    return (orb_charges){plan->n_cones, plan->cones, plan->charges, s->curvature == 0 ? 0 : s->euler};
-}
+orb_charges plan_charges(const orb_plan *plan);
 
 #endif

@@ -9,18 +9,23 @@
 
 static const double pi = 3.14159265358979323846;
 
+/* The picks may be in another sequence than the signature's. */
+static orb_charges charges_of(const orb_surface *surface, double *charge) {
+    orb_charges charges = spread_charges(surface->signature, surface->vertex, charge);
+    for (int32_t k = 0; k < surface->n_marks; k++)
+        charge[k] = (surface->mirror[k] ? 1 : 2) * pi * (1 - 1.0 / surface->order[k]);
+    return charges;
+}
+
 /* u of the surface's own cones and corners, scale[surface->plain->n_vertices]. */
 static orb_status find_scale(const orb_surface *surface, double *scale, double *spread, orb_error *error) {
     orb_spread *form = NULL;
-    const orb_signature *signature = surface->signature;
     double *charge = malloc(((size_t)surface->n_marks + 1) * sizeof *charge);
     orb_status status = charge ? spread_create(surface->plain, &form, error) : error_memory(error);
-    for (int32_t k = 0; k < surface->n_marks && status == ORB_OK; k++)
-        charge[k] = (surface->mirror[k] ? 1 : 2) * pi * (1 - 1.0 / surface->order[k]);
-    const orb_charges charges = {surface->n_marks, surface->vertex, charge,
-                                 signature->curvature == 0 ? 0 : signature->euler};
-    if (status == ORB_OK)
+    if (status == ORB_OK) {
+        const orb_charges charges = charges_of(surface, charge);
         status = spread_scales(form, 1, &charges, &scale, error);
+    }
     if (status == ORB_OK && spread)
         *spread = spread_deviation(form, scale);
     spread_free(form);

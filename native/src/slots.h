@@ -1,4 +1,4 @@
-/* The cones of a signature as slots to be filled with places. SPDX-License-Identifier: GPL-3.0-or-later */
+/* The cones of a signature as slots to be filled with sites. SPDX-License-Identifier: GPL-3.0-or-later */
 #ifndef ORB_SLOTS_H
 #define ORB_SLOTS_H
 
@@ -9,7 +9,7 @@
 typedef struct orb_slot {
     int32_t order;
     double charge; /* of each of its cones: 2 pi (1 - 1/n), on a mirror half as much */
-    int32_t kind;  /* of its place */
+    int32_t kind;  /* of its site */
 } orb_slot;
 
 /* Slots of one kind and order can be exchanged. */

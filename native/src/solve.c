@@ -6,6 +6,7 @@
 
 #include "balance.h"
 #include "certificate.h"
+#include "dilation.h"
 #include "distortion.h"
 #include "initial.h"
 #include "modulus.h"
@@ -250,6 +251,31 @@ static void choose_modulus(orb_workshop *work) {
     modulus_report(work->embedding);
 }
 
+/* Where a dilation is free, conformal energy does not feel it, and the discrete one only by its error: so conformal weights
+ * leave it to the spread of area. If that flips a triangle, the minimum stays as it is. */
+static orb_status choose_dilation(orb_workshop *work, orb_error *error) {
+    orb_embedding *embedding = work->embedding;
+    const size_t bytes = ((size_t)embedding->mesh->n_vertices + 1) * sizeof *embedding->position;
+    if (!dilation_is_free(embedding->surface->signature))
+        return ORB_OK;
+    orb_point *before = malloc(bytes);
+    bool *flipped = malloc((size_t)embedding->mesh->n_triangles + 1);
+    orb_status status = before && flipped ? ORB_OK : error_memory(error);
+    if (status == ORB_OK) {
+        memcpy(before, embedding->position, bytes - sizeof *before);
+        status = dilation_choose(embedding, error);
+    }
+    if (status == ORB_OK)
+        status = place_copies(work, error);
+    if (status == ORB_OK && certificate_find_flipped(embedding, flipped) > 0) {
+        memcpy(embedding->position, before, bytes - sizeof *before);
+        status = place_copies(work, error);
+    }
+    free(before);
+    free(flipped);
+    return status;
+}
+
 /* The view shows weights of the mesh's edges only, and symmetric ones. */
 static void leave_weights(orb_workshop *work) {
     if (work->intrinsic)
@@ -273,6 +299,8 @@ orb_status solve_minimise(orb_workshop *work, orb_error *error) {
     choose_modulus(work);
     if (report->n_moduli > 0)
         status = place_copies(work, error);
+    if (status == ORB_OK && work->request->weights == ORB_WEIGHTS_CONFORMAL)
+        status = choose_dilation(work, error);
     if (status != ORB_OK)
         return status;
     report->energy = problem_energy(work->problem, embedding->placed, NULL, NULL, NULL, NULL, NULL);

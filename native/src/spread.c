@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dilation.h"
+
 static const double pi = 3.14159265358979323846;
 enum { MOST_STEPS = 16 };                                         /* towards the fixed point */
 static const double fixed_point = 3e-4;                           /* relative to u */
@@ -164,6 +166,15 @@ orb_status spread_columns(orb_spread *spread, int32_t n, const int32_t *vertex, 
     return status;
 }
 
+orb_charges spread_charges(const orb_signature *signature, const int32_t *vertex, double *charge) {
+    const int32_t n = signature->n_cones + signature->n_corners;
+    for (int32_t i = 0; i < n; i++)
+        charge[i] = (i < signature->n_cones ? 2 : 1) * pi * (1 - 1.0 / signature->orders[i]);
+    const double euler = signature->curvature == 0 ? 0 : signature->euler;
+    const double lune = dilation_is_free(signature) ? (signature->n_cones > 0 ? 2 : 1) * pi / signature->orders[0] : 0;
+    return (orb_charges){n, vertex, charge, euler, lune};
+}
+
 /* --- the fixed point --------------------------------------------------------------------------------------------- */
 
 /* One choice of cones on its way. */
@@ -249,13 +260,46 @@ static orb_status solve_linear(orb_spread *spread, int32_t n, const orb_charges 
     return status;
 }
 
+/* --- lunes ------------------------------------------------------------------------------------------------------- */
+
+/* Without its two cones the surface is a cylinder, flat in the metric e^2v |dx|^2 where the cones have all the curvature, and
+ * its height is a harmonic function; u = v - log cosh(height + s) for any s (dilation.h). */
+static orb_status scale_lune(orb_spread *spread, const orb_charges *charges, double *scale, orb_error *error) {
+    const int32_t n = spread->mesh->n_vertices;
+    const double *area = spread->shape.area;
+    double *flat = block_column(spread, 0), *height = block_column(spread, 1), *base = block_column(spread, 2);
+    const bool mirrored = spread->mesh->n_boundary_loops > 0;
+    for (int32_t v = 0; v < n; v++) {
+        flat[v] = -2 * (mirrored ? pi : 2 * pi) * area[v];
+        height[v] = 0;
+    }
+    for (int32_t end = 0; end < 2; end++) {
+        flat[charges->vertex[end]] += mirrored ? pi : 2 * pi;
+        height[charges->vertex[end]] += end ? -charges->lune : charges->lune;
+    }
+    orb_status status = solve_block(spread, 2, error);
+    if (status != ORB_OK)
+        return status;
+    for (int32_t v = 0; v < n; v++)
+        base[v] = 2 * (spread->bare[v] + flat[v]);
+    const double shift = dilation_of_least_spread(n, area, base, height);
+    double mean = 0;
+    for (int32_t v = 0; v < n; v++) {
+        scale[v] = 0.5 * base[v] - dilation_log_cosh(height[v] + shift);
+        mean += area[v] * scale[v];
+    }
+    for (int32_t v = 0; v < n; v++)
+        scale[v] = spread->mesh->vertex_halfedge[v] < 0 ? 0 : scale[v] - mean;
+    return ORB_OK;
+}
+
 orb_status spread_scales(orb_spread *spread, int32_t n, const orb_charges *charges, double *const *scale,
                          orb_error *error) {
     relaxation all[SPREAD_BLOCK] = {{0}};
     const size_t room = (size_t)spread->mesh->n_vertices + 1;
     orb_status status = ORB_OK;
     for (int32_t k = 0; k < n && status == ORB_OK; k++) {
-        all[k] = (relaxation){NULL, NULL, 1, true, charges[k].euler == 0};
+        all[k] = (relaxation){NULL, NULL, 1, true, charges[k].euler == 0 || charges[k].lune > 0};
         if (all[k].done)
             continue;
         all[k].start = malloc(room * sizeof *all[k].start);
@@ -270,6 +314,9 @@ orb_status spread_scales(orb_spread *spread, int32_t n, const orb_charges *charg
             memcpy(all[k].start, scale[k], (size_t)spread->mesh->n_vertices * sizeof *all[k].start);
     if (status == ORB_OK)
         status = run_to_fixed_points(spread, n, charges, all, scale, error);
+    for (int32_t k = 0; k < n && status == ORB_OK; k++)
+        if (charges[k].lune > 0)
+            status = scale_lune(spread, charges + k, scale[k], error);
     for (int32_t k = 0; k < n; k++) {
         free(all[k].start);
         free(all[k].previous);

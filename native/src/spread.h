@@ -12,6 +12,7 @@
 
 #include "laplacian.h"
 #include "shape.h"
+#include "signature.h"
 
 typedef struct orb_spread {
     const orb_mesh *mesh;
@@ -39,10 +40,14 @@ typedef struct orb_charges {
     const int32_t *vertex; /* [n] */
     const double *charge;  /* [n] */
     double euler;          /* of the orbifold, exactly 0 if it is flat */
+    double lune;           /* where the two leave a dilation free, the angle between the meridians; else 0 */
 } orb_charges;
 
+/* Of a signature whose cones and corners are at vertex[n], in its sequence; charge[n] is filled in. */
+orb_charges spread_charges(const orb_signature *signature, const int32_t *vertex, double *charge);
+
 /* u of n <= SPREAD_BLOCK choices of cones, scale[i][n_vertices], 0 at isolated vertices and of mean zero, with a(u) at its
- * fixed point. Where that is not reached, the last u stands. */
+ * fixed point; where that is not reached, the last u stands. Of the maps onto a lune, the one with the least spread. */
 orb_status spread_scales(orb_spread *spread, int32_t n, const orb_charges *charges, double *const *scale,
                          orb_error *error);
 

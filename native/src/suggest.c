@@ -8,13 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "distortion.h"
 #include "plan.h"
 #include "surface.h"
 #include "topology.h"
 #include "usual.h"
 
 static const double most_sampled = 2.5e6; /* candidates times vertices */
-static const double promising = 0.9;      /* of the best spread so far, for a tile that is not conformal */
+/* Where many cones are worth an embedding: the best spread without them, and theirs relative to it. */
+static const double large_spread = 1, promising = 0.9;
 enum {
     FEWEST_CANDIDATES = 60,
     MOST_CANDIDATES = 120,
@@ -68,6 +70,21 @@ static orb_status add_plan(orb_study *study, const char *text, bool sure, orb_er
     return status;
 }
 
+/* Drops those of the sphere and the hyperbolic plane, if others are left. */
+static void keep_flat(orb_study *study) {
+    int32_t n_flat = 0, n = study->n;
+    for (int32_t k = 0; k < n; k++)
+        n_flat += study->plans[k]->signature->curvature == 0;
+    if (n_flat == 0)
+        return;
+    study->n = 0;
+    for (int32_t k = 0; k < n; k++)
+        if (study->plans[k]->signature->curvature == 0)
+            study->plans[study->n++] = study->plans[k];
+        else
+            plan_free(study->plans[k]);
+}
+
 static orb_status list_signatures(orb_study *study, orb_error *error) {
     const orb_suggest_request *request = study->request;
     const bool filled = request->holes == ORB_HOLES_FILL;
@@ -76,8 +93,7 @@ static orb_status list_signatures(orb_study *study, orb_error *error) {
     orb_status status = ORB_OK;
     if (n == 0)
         return error_set(error, ORB_WRONG_GENUS,
-                         "no signature is usual for a mesh with so many handles and holes: ask "
-                         "for one");
+                         "no signature is usual for a mesh with so many handles and holes: ask for one");
     study->plans = calloc((size_t)n, sizeof *study->plans);
     if (!study->plans)
         return error_memory(error);
@@ -86,6 +102,8 @@ static orb_status list_signatures(orb_study *study, orb_error *error) {
             status = add_plan(study, request->signatures[k], true, error);
         else if (k < usual.n_sure || study->input->n_vertices <= MOST_EMBEDDED)
             status = add_plan(study, usual.text[k], k < usual.n_sure, error);
+    if (request->n_signatures == 0 && request->flat)
+        keep_flat(study);
     return status;
 }
 
@@ -258,7 +276,8 @@ static orb_status run_group(group *g, int32_t n_mirrors, orb_error *error) {
         status = spread_create(g->mesh, &g->spread, error);
     if (status == ORB_OK)
         status = columns_create(g->spread, &study->monitor, &g->columns, error);
-    g->n_candidates = count_candidates(g);
+    if (status == ORB_OK)
+        g->n_candidates = count_candidates(g);
     const bool symmetric = status == ORB_OK && g->ground->reflection;
     if (symmetric) {
         status = place_plans(g, true, error);
@@ -304,10 +323,9 @@ static bool report_part(const char *stage, double fraction, void *user) {
     return monitor_report(p->monitor, "embedding", p->from + (p->to - p->from) * fraction, NULL) == ORB_OK;
 }
 
-/* The embedding's spread; a plan whose embedding fails loses its places. */
+/* The embedding's distortion; a plan whose embedding fails loses its places. */
 static orb_status measure(orb_study *study, orb_plan *plan, part *progress, orb_error *error) {
     orb_embedding *embedding = NULL;
-    orb_report report;
     orb_request request = orb_request_default();
     request.signature = plan->text;
     request.n_cones = plan->n_cones;
@@ -320,8 +338,7 @@ static orb_status measure(orb_study *study, orb_plan *plan, part *progress, orb_
         return error_set(error, status, "%s", study->failure.message);
     plan->placed = status == ORB_OK;
     if (status == ORB_OK) {
-        orb_embedding_report(embedding, &report);
-        plan->predicted = report.log_area_std;
+        plan->predicted = distortion_spread(embedding);
         plan->measured = true;
     }
     orb_embedding_free(embedding);
@@ -336,7 +353,8 @@ static orb_status measure_plans(orb_study *study, orb_error *error) {
             best = fmin(best, study->plans[k]->predicted);
     for (int32_t k = 0; k < study->n; k++) {
         orb_plan *plan = study->plans[k];
-        plan->placed = plan->placed && (plan->conformal_tile || plan->sure || plan->conformal < promising * best);
+        const bool helps = best > large_spread && plan->conformal < promising * best;
+        plan->placed = plan->placed && (plan->conformal_tile || plan->sure || helps);
         n += plan->placed && !plan->conformal_tile;
     }
     orb_status status = ORB_OK;
