@@ -297,8 +297,8 @@ def write_int_attribute(mesh: bpy.types.Mesh, name: str, values: np.ndarray) -> 
 
 
 def read_group_weights(mesh: bpy.types.Mesh, group: int) -> np.ndarray:
-    """(n,) float64 the weight of each vertex in a vertex group, by the group's index; 0 where it is not a member. There is
-    no fast call for these."""
+    """(n,) float64 the weight of each vertex in a vertex group, by the group's index; 0 where it is not a member. There
+    is no fast call for these."""
     return np.fromiter(
         (next((member.weight for member in v.groups if member.group == group), 0.0) for v in mesh.vertices),
         np.float64, len(mesh.vertices),

@@ -83,14 +83,18 @@ def _among(orders: list[int], typed: core.Signature) -> bool:
 def sync(mesh: bpy.types.Mesh) -> None:
     """Bring the mirror, and the signature where it says something else, in line with the vertices."""
     cones.sync(mesh)
-    orders = [item.order for item in mesh.orbifold.cones]
-    if not orders:
-        suggestions.sync(mesh)
-        return
-    places = arranged(mesh, [item.vertex for item in mesh.orbifold.cones])
+    picks = [cones.Cone(item.vertex, item.order) for item in mesh.orbifold.cones]
+    orders = [pick.order for pick in picks]
     typed = read_signature(mesh.orbifold.signature)
-    if typed is None or places.orders_from(typed) != orders:
-        write_signature(mesh, places.text(orders))
+    suggested = None
+    if typed is None or not orders or len(typed.orders) != len(orders):
+        suggested = suggestions.signature_for(mesh, picks)
+    if suggested is not None:
+        write_signature(mesh, suggested)
+    elif orders:
+        places = arranged(mesh, [pick.vertex for pick in picks])
+        if typed is None or places.orders_from(typed) != orders:
+            write_signature(mesh, places.text(orders))
 
 
 def write_signature(mesh: bpy.types.Mesh, text: str) -> None:

@@ -3,8 +3,8 @@
 
 A row names vertices by their indices, so the table is stale once the mesh has other vertices, edges or faces than when
 it was made; undoing that makes it good again. Which row is placed is not kept but read from the cones, whatever undo
-and redo do to these. Undo in edit mode restores the cones, which are vertex data, but not the signature (cones.py); so
-the table remembers which signature a row has replaced, for `sync`.
+and redo do to these. Undo in edit mode restores the cones, which are vertex data, but not the signature (cones.py);
+`signature_for` says what it must have been.
 """
 
 from __future__ import annotations
@@ -46,8 +46,8 @@ class OrbifoldSuggestions(bpy.types.PropertyGroup):
     active: IntProperty(name="Suggestion", get=_active_row, set=_keep_row, options={"HIDDEN"})
     made_for: IntVectorProperty(size=3)  # numbers of vertices, edges, faces
     fixed: StringProperty()  # vertices that were picked by hand and are cones of every row
-    replaced: StringProperty()  # the signature of a mesh without cones, before a row was placed
-    replaced_by: StringProperty()  # the row's signature
+    replaced: StringProperty()  # the signature of the mesh while it had no cones, before a row was placed
+    has_replaced: BoolProperty()  # `replaced` is in force: no one has typed a signature since
 
 
 CLASSES = (OrbifoldSuggestion, OrbifoldSuggestions)
@@ -90,6 +90,17 @@ def placed_row(mesh: bpy.types.Mesh) -> int:
     return -1
 
 
+def signature_for(mesh: bpy.types.Mesh, picks: Sequence[cones.Cone]) -> Optional[str]:
+    """After undo or redo, where the mesh's signature is not one of these cones: that of the row that they come from,
+    or, without cones, the one before any row was placed. None: the table does not know."""
+    settings = mesh.orbifold
+    table = settings.suggestions
+    if not picks:
+        ours = table.has_replaced and any(row.signature == settings.signature for row in table.rows)
+        return table.replaced if ours else None
+    return next((row.signature for row in table.rows if row.picks() == list(picks)), None)
+
+
 def picked_by_hand(mesh: bpy.types.Mesh) -> list[int]:
     """The mesh's cones; where they are those of a row, only the ones that it had to keep."""
     if placed_row(mesh) >= 0:
@@ -101,7 +112,7 @@ def place(mesh: bpy.types.Mesh, signature: str, picks: Sequence[cones.Cone]) -> 
     """Give the mesh these cones, in the signature's sequence, and the signature; in any mode."""
     settings = mesh.orbifold
     if not cones.read_cones(mesh):
-        settings.suggestions.replaced, settings.suggestions.replaced_by = settings.signature, signature
+        settings.suggestions.replaced, settings.suggestions.has_replaced = settings.signature, True
     cones.write_cones(mesh, picks)
     with cones.writing():
         settings.signature = signature
@@ -110,15 +121,7 @@ def place(mesh: bpy.types.Mesh, signature: str, picks: Sequence[cones.Cone]) -> 
 
 def forget_replaced(mesh: bpy.types.Mesh) -> None:
     """The signature is the user's own from now on."""
-    mesh.orbifold.suggestions.replaced = mesh.orbifold.suggestions.replaced_by = ""
-
-
-def sync(mesh: bpy.types.Mesh) -> None:
-    """The mesh has no cones: where undo has taken a row's back, take back its signature too."""
-    settings = mesh.orbifold
-    if settings.suggestions.replaced_by and settings.signature == settings.suggestions.replaced_by:
-        with cones.writing():
-            settings.signature = settings.suggestions.replaced
+    mesh.orbifold.suggestions.has_replaced = False
 
 
 # --------------------------------------------------------------------------------------------------- keep away

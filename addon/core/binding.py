@@ -175,6 +175,7 @@ class SuggestRequest(Structure):
     _fields_ = [
         ("n_signatures", c_int32),
         ("signatures", POINTER(c_char_p)),
+        ("flat", c_bool),
         ("n_fixed", c_int32),
         ("fixed", INT32S),
         ("keep_away", DOUBLES),
@@ -396,6 +397,7 @@ def request_of(
 
 def suggest_request_of(
     signatures: Sequence[str] | None,
+    flat: bool,
     fixed: np.ndarray,
     keep_away: np.ndarray | None,
     holes: int,
@@ -404,7 +406,7 @@ def suggest_request_of(
 ) -> SuggestRequest:
     """Arrays are kept alive by the caller; `signatures` None: the usual ones."""
     names = [encode_signature(signature) for signature in signatures or ()]
-    request = SuggestRequest(n_signatures=len(names), signatures=(c_char_p * len(names))(*names))
+    request = SuggestRequest(n_signatures=len(names), signatures=(c_char_p * len(names))(*names), flat=flat)
     request.n_fixed, request.fixed, request.keep_away = len(fixed), int32s(fixed), doubles(keep_away)
     request.holes, request.symmetry, request.plane = holes, symmetry, tuple(plane)
     return request

@@ -27,7 +27,7 @@ DEPENDS_ON_CONES = ("ORB_CUT_BLOCKED", "ORB_NOT_CONVERGED", "ORB_CERTIFICATE_FAI
 
 @dataclass(frozen=True)
 class Suggestion:
-    """Cones for a mesh. A spread is the area-weighted standard deviation of log(area on the tile / area on the mesh)."""
+    """Cones for a mesh. Spreads are area-weighted standard deviations of log(area on the tile / area on the mesh)."""
 
     signature: str
     cones: tuple[int, ...]  # vertices, in the signature's sequence, as `embed` takes them
@@ -60,6 +60,7 @@ def start_suggesting(
     fixed: Sequence[int] | np.ndarray = (),
     keep_away: ArrayLike | None = None,
     *,
+    flat: bool = False,
     holes: str = "refuse",
     symmetry: str | Sequence[float] = "detect",
 ) -> SuggestionJob:
@@ -71,7 +72,7 @@ def start_suggesting(
     kept = integers(fixed, (-1,), "fixed cones", "ORB_BAD_CONE", "vertex")
     weights = None if keep_away is None else _weights_of(keep_away, len(points))
     way, plane = _symmetry_of(symmetry)
-    request = binding.suggest_request_of(names, kept, weights, holes_of(holes), way, plane)
+    request = binding.suggest_request_of(names, bool(flat), kept, weights, holes_of(holes), way, plane)
     return SuggestionJob(binding.Job(points, faces, request))
 
 
@@ -82,6 +83,7 @@ def suggest_cones(
     fixed: Sequence[int] | np.ndarray = (),
     keep_away: ArrayLike | None = None,
     *,
+    flat: bool = False,
     holes: str = "refuse",
     symmetry: str | Sequence[float] = "detect",
     progress: Progress | None = None,
@@ -92,6 +94,7 @@ def suggest_cones(
     signatures  one, or several; None: what is usual for the mesh's topology
     fixed       vertices that are cones (on the boundary: mirror corners) of every suggestion
     keep_away   (n,) >= 0: what a cone at each vertex costs, in squared log area; infinite: never there
+    flat        of the usual signatures only those of the plane, where there are any: an image repeats over their tile
     holes       as for `embed`
     symmetry    "detect" the mesh's mirror plane and suggest symmetric cones, "ignore" it, or a plane: the four numbers
                 of a x + b y + c z = d
@@ -100,9 +103,7 @@ def suggest_cones(
     Raises OrbifoldError. Signatures that do not fit are left out, unless that leaves nothing.
     """
     job = start_suggesting(
-        *(vertices, triangles, signatures, fixed, keep_away),
-        holes=holes,
-        symmetry=symmetry,
+        *(vertices, triangles, signatures, fixed, keep_away), flat=flat, holes=holes, symmetry=symmetry
     )
     return wait_for(job, progress)
 

@@ -98,11 +98,12 @@ class EmbeddingOperator(JobOperator):
         with blender_mesh.object_mode(obj):
             self.write_cones(obj.data, result)
             message = self.write(context, result, computed)
-        if self._text is not None:
-            self.signature = self._text  # for the redo panel
         return message
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        settings = context.active_object.data.orbifold
+        if not self.signature:
+            self.signature = settings.signature
         if self.holes == "mesh":
-            self.holes = context.active_object.data.orbifold.holes
+            self.holes = settings.holes
         return super().invoke(context, event)

@@ -180,3 +180,5 @@ class JobOperator:
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
         context.workspace.status_text_set(None)
+        for area in context.screen.areas:  # the sidebars: nothing else tells them of our properties
+            area.tag_redraw()

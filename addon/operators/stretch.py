@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import math
-
 import bpy
 import numpy as np
 
@@ -13,7 +11,6 @@ from .jobs import mesh_problem, report_failure
 
 ATTRIBUTE = "orbifold_stretch"  # log of the factor by which lengths grow
 COLOUR = "Orbifold Stretch"
-FULL = math.log(4)  # lengths four times those of the mean, or a quarter of them, have the full colour
 SMALL, LARGE = (0.02, 0.13, 0.75), (0.75, 0.03, 0.03)  # blue, red; linear
 
 
@@ -25,18 +22,19 @@ def stretch_problem(context: bpy.types.Context) -> str | None:
 
 
 def colours_of(scale: np.ndarray) -> np.ndarray:
-    """(n, 4) linear: blue where lengths shrink, white where they stay, red where they grow."""
-    amount = np.clip(scale / FULL, -1.0, 1.0)[:, None]
-    full = np.where(amount < 0, SMALL, LARGE)
-    return np.column_stack([1 + np.abs(amount) * (full - 1), np.ones(len(scale))])
+    """(n, 4) linear: blue where lengths shrink, white where they stay, red where they grow; half the colour where they
+    are half or twice as long."""
+    amount = 1 - np.exp(-np.abs(scale))[:, None]
+    full = np.where(scale[:, None] < 0, SMALL, LARGE)
+    return np.column_stack([1 + amount * (full - 1), np.ones(len(scale))])
 
 
 class MESH_OT_orbifold_show_stretch(bpy.types.Operator):
     bl_idname = "mesh.orbifold_show_stretch"
     bl_label = "Show Predicted Stretch"
     bl_description = (
-        "Colour the mesh by how much the conformal map with its cones stretches lengths: blue where the layout is small, "
-        f"red where it is large, white between. Written to the attributes {ATTRIBUTE} and {COLOUR}"
+        "Colour the mesh by how much the conformal map with its cones stretches lengths: blue where the layout is "
+        f"small, red where it is large, white between. Written to the attributes {ATTRIBUTE} and {COLOUR}"
     )
     bl_options = {"REGISTER", "UNDO"}
 

@@ -22,11 +22,11 @@ class SuggestingOperator(JobOperator):
             self._keep_away = suggestions.keep_away(obj)
 
     def suggesting(
-        self, signature: Optional[str], fixed: Sequence[int], holes: str, symmetry: str = "detect"
+        self, signature: Optional[str], fixed: Sequence[int], holes: str, symmetry: str = "detect", flat: bool = False
     ) -> core.SuggestionJob:
         return core.start_suggesting(
             *(self._arrays.vertices, self._arrays.triangles, signature, fixed, self._keep_away),
-            holes=holes, symmetry=symmetry,
+            flat=flat, holes=holes, symmetry=symmetry,
         )
 
 
@@ -49,6 +49,7 @@ class MESH_OT_orbifold_suggest_cones(SuggestingOperator, bpy.types.Operator):
         name="Signatures",
         items=(
             ("USUAL", "Usual Ones", "Those that are usual for the mesh's surface"),
+            ("FLAT", "Plane Only", "Of the usual ones those over whose tile an image repeats"),
             ("OWN", "The Mesh's Own", "Only the signature that is typed in the sidebar"),
         ),
     )
@@ -80,7 +81,8 @@ class MESH_OT_orbifold_suggest_cones(SuggestingOperator, bpy.types.Operator):
             raise blender_mesh.BlenderMeshError("The mesh has no signature: type one in the sidebar, or use Usual Ones")
         self._fixed = suggestions.picked_by_hand(mesh) if self.keep_picked else []
         holes = settings.holes if self.holes == "mesh" else self.holes
-        return self.suggesting(settings.signature if self.scope == "OWN" else None, self._fixed, holes, self.symmetry)
+        signature = settings.signature if self.scope == "OWN" else None
+        return self.suggesting(signature, self._fixed, holes, self.symmetry, self.scope == "FLAT")
 
     def proceed(self, context: bpy.types.Context, job: core.Job) -> str:
         found = job.finish()

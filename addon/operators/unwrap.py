@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Optional, Union
 
 import bpy
+from bpy.props import BoolProperty
 
 from .. import cones, core, properties, suggestions
 from .suggesting import SuggestingOperator
@@ -47,10 +48,20 @@ class UV_OT_orbifold_unwrap(SuggestingOperator, UVOperator, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
+    flat: BoolProperty(
+        name="Plane Only",
+        description="Where cones are suggested for any signature: only those of the plane, which keep angles, and over "
+        "whose tile an image repeats. Without this also those that even out areas more, but may shear a great deal",
+        default=True,
+    )
+
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
         layout.prop(self, "signature")
+        missing = getattr(self, "_missing", None)
+        if missing is not None and missing.signature is None:
+            layout.prop(self, "flat")
         if getattr(self, "_extra_borders", 0) > 0 or self.holes not in ("mesh", "refuse"):
             layout.prop(self, "holes")
         layout.prop(self, "weights")
@@ -72,7 +83,8 @@ class UV_OT_orbifold_unwrap(SuggestingOperator, UVOperator, bpy.types.Operator):
     def start(self, context: bpy.types.Context) -> core.Job:
         if self._missing is None:
             return super().start(context)
-        return self.suggesting(*(self._missing.signature, self._missing.fixed), self.holes_of(context.active_object.data))
+        holes = self.holes_of(context.active_object.data)
+        return self.suggesting(self._missing.signature, self._missing.fixed, holes, flat=self.flat)
 
     def proceed(self, context: bpy.types.Context, job: core.Job) -> Union[core.Job, str]:
         mesh = context.active_object.data

@@ -22,7 +22,7 @@ class SignatureState:
 def signature_state(signature: str, n_cones: int, n_corners: int = 0) -> SignatureState:
     """What the panel says below the signature field, where so many cones and mirror corners are picked."""
     if not signature:
-        return SignatureState("Orbifold Unwrap will choose signature and cones, or type, choose and pick your own", False)
+        return SignatureState("Orbifold Unwrap will choose the cones and their signature", False)
     try:
         read = core.parse_signature(signature)
         words = core.describe(signature).partition(": ")[2]
@@ -87,16 +87,16 @@ class MESH_UL_orbifold_suggestions(bpy.types.UIList):
 
     def draw_item(self, context, layout, _data, item, _icon, _active_data, _active_property, index=0) -> None:
         placed = suggestions.placed_row(context.active_object.data) == index
-        row = layout.row(align=True)
-        row.alignment = "LEFT"
-        texts = table_texts(item)
-        for (factor, text), icon in zip(zip(COLUMNS, texts), ("RADIOBUT_ON" if placed else "RADIOBUT_OFF", "NONE", "NONE")):
-            cell = row.row()
-            cell.ui_units_x = factor
+        icons = ("RADIOBUT_ON" if placed else "RADIOBUT_OFF", "NONE", "NONE")
+        for cell, text, icon in zip(table_columns(layout), table_texts(item), icons):
             cell.operator("mesh.orbifold_place_suggestion", text=text, icon=icon, emboss=False).index = index
 
 
-COLUMNS = (5.0, 3.0, 2.0)  # widths in units of the interface
+def table_columns(layout: bpy.types.UILayout) -> tuple[bpy.types.UILayout, ...]:
+    """Places for signature, spread and number of cones in a row of the table."""
+    row = layout.split(factor=0.48, align=True)
+    signature, others = row.row(), row.split(factor=0.64, align=True)
+    return signature, others.row(), others.row()
 
 
 def table_texts(row) -> tuple[str, str, str]:
@@ -150,9 +150,10 @@ def draw_suggestions(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
     settings = obj.data.orbifold
     column = layout.column()
     column.operator("mesh.orbifold_suggest_cones", icon="LIGHT")
+    column.label(text="Keep cones away from:")
     row = column.row()
     row.alert = bool(settings.keep_away) and settings.keep_away not in obj.vertex_groups
-    row.prop_search(settings, "keep_away", obj, "vertex_groups")
+    row.prop_search(settings, "keep_away", obj, "vertex_groups", text="")
     table = settings.suggestions
     if not len(table.rows):
         return
@@ -161,9 +162,8 @@ def draw_suggestions(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
         column.label(text="The mesh has changed: suggest again", icon="ERROR")
     column = column.column()
     column.active = not stale
-    titles = column.row(align=True)
-    for text in ("Signature", "Spread", "Cones"):
-        titles.label(text=text)
+    for cell, text in zip(table_columns(column), ("Signature", "Spread", "Cones")):
+        cell.label(text=text)
     name = MESH_UL_orbifold_suggestions.bl_idname
     column.template_list(name, "", table, "rows", table, "active", rows=min(5, len(table.rows)), sort_lock=True)
 

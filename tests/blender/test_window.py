@@ -43,6 +43,24 @@ def test_one_undo_takes_it_back(seen: dict) -> None:
     assert seen["cones_after_undo"] == [4, 3, 2]
 
 
+def test_suggestions_come_modally_and_a_row_is_placed_in_edit_mode(seen: dict) -> None:
+    assert seen["invoked_suggest"] == ["RUNNING_MODAL"]
+    assert seen["mode_after_suggest"] == "EDIT"
+    assert seen["placed"] == [1, True]
+    assert seen["after_undo"] == [0, ""]
+
+
+def test_one_click_suggests_and_unwraps_in_one_step(seen: dict) -> None:
+    assert seen["invoked_bare"] == ["RUNNING_MODAL"]
+    assert seen["cones_of_one_click"] >= 2
+    assert seen["after_one_undo"] == [0, 0, ""]
+
+
+def test_escape_ends_suggesting(seen: dict) -> None:
+    assert seen["invoked_suggest_large"] == ["RUNNING_MODAL"]
+    assert seen["rows_after_esc"] == 0
+
+
 def test_escape_ends_it_and_changes_nothing(seen: dict) -> None:
     assert seen["invoked_large"] == ["RUNNING_MODAL"]
     assert seen["uv_after_esc"] == []

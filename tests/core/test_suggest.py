@@ -60,7 +60,15 @@ def test_one_signature_or_several(mesh):
     assert alone.signature == "632" and alone.orders == (6, 3, 2)
     several = core.suggest_cones(*mesh, ["632", "33", "2222"])
     assert {suggestion.signature for suggestion in several} == {"632", "33", "2222"}
-    assert alone in several
+    same = next(suggestion for suggestion in several if suggestion.signature == "632")
+    assert same.predicted == pytest.approx(alone.predicted, rel=0.01)  # the search shares what it knows
+
+
+def test_only_the_plane_where_an_image_is_to_repeat(mesh, usual):
+    flat = core.suggest_cones(*mesh, flat=True)
+    assert {core.geometry_of(suggestion.signature) for suggestion in flat} == {"euclidean"}
+    of_all = [suggestion for suggestion in usual if core.geometry_of(suggestion.signature) == "euclidean"]
+    assert [one.signature for one in flat] == [one.signature for one in of_all]
 
 
 def test_fixed_cones_stay(mesh):

@@ -9,15 +9,18 @@ import bmesh
 import bpy
 import numpy as np
 
-sys.path.insert(0, os.path.dirname(__file__))
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [HERE, os.path.join(HERE, "..", "..", "core")]
 import grids  # noqa: E402
+from conway import features  # noqa: E402
 from harness import (  # noqa: E402
     blob, click, edit_mode, enable, mesh_object, object_mode, part, picked, raises, run_checks,
 )
+from picks import inside, picks_for  # noqa: E402
 
 enable()
 core, blender_mesh, faces, charts = part("core"), part("blender_mesh"), part("faces"), part("core.charts")
-properties, surface, automatic = part("properties"), part("surface"), part("headless.automatic")
+properties, surface = part("properties"), part("surface")
 
 
 # ---------------------------------------------------------------------------------------------------- meshes
@@ -47,10 +50,10 @@ CASES = [
 
 
 def prepare(make, signature, quads=False):
-    """An object with cones at automatic places and the signature; its arrays and the result of core."""
+    """An object with cones far from one another and the border, and the signature; its arrays and the result of core."""
     obj = make(quads)
     arrays = blender_mesh.read_mesh(obj.data)
-    chosen = automatic.automatic_cones(arrays.vertices, arrays.triangles, core.parse_signature(signature))
+    chosen = picks_for(arrays.vertices, arrays.triangles, features(signature))
     result = core.embed(arrays.vertices, arrays.triangles, signature, chosen, weights="conformal")
     obj.data.orbifold.signature = signature
     properties.set_cones(obj.data, chosen, [None] * len(chosen))
@@ -359,7 +362,7 @@ def check_other_spherical_orbifolds_have_uvs_and_no_key():
 
 def inside_of(obj):
     arrays = blender_mesh.read_mesh(obj.data)
-    return automatic.automatic_cones(arrays.vertices, arrays.triangles, core.parse_signature("442"))
+    return inside(arrays.vertices, arrays.triangles, 3)
 
 
 def check_holes_are_refused_filled_or_mirrored():

@@ -232,7 +232,7 @@ def check_operators_say_what_is_missing():
     blob()
     assert "edit mode" in raises(bpy.ops.mesh.orbifold_add_cones)
     assert "Add Cones" in raises(bpy.ops.mesh.orbifold_clear_cones)
-    assert "at least two cones" in raises(bpy.ops.uv.orbifold_unwrap)
+    assert "at least two cones" in raises(bpy.ops.object.orbifold_sphere)
     set_cones(bpy.context.object, "442")
     assert "spherical one" in raises(bpy.ops.object.orbifold_sphere)
     bpy.ops.object.empty_add()

@@ -40,7 +40,8 @@ def check_a_library_and_a_manifest_were_installed():
 
 def check_enabling_adds_operators_menus_and_the_property():
     now = state()
-    assert {"uv.orbifold_unwrap", "object.orbifold_sphere", "mesh.orbifold_add_cones"} <= now["operators"]
+    wanted = "uv.orbifold_unwrap object.orbifold_sphere mesh.orbifold_add_cones mesh.orbifold_suggest_cones"
+    assert set(wanted.split()) <= now["operators"]
     assert "orbifold" in now["mesh"]
     assert all(now["menus"][name] == before["menus"][name] + 1 for name in MENUS), now["menus"]
     assert {"VIEW3D_PT_orbifold", "IMAGE_PT_orbifold"} <= now["types"]

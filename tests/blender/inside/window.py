@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""In a real window: the panel, the modal operator, Esc. Arguments: SCREENSHOT or -, JSON.
+"""In a real window: the panel, the modal operators, Esc. Arguments: SCREENSHOT or -, JSON; a second picture, of the
+table of suggestions, goes beside the first.
 
 Events are simulated one a timer tick; each step polls for the state that it wants. What was seen is written as JSON:
 only that counts, not the exit status."""
@@ -82,6 +83,8 @@ def steps():
             yield
         subprocess.run(["import", "-window", "root", picture], check=True)
     yield from undone(obj.name)
+    yield from suggested()
+    yield from one_click()
     yield from escaped()
 
 
@@ -128,9 +131,72 @@ def undone(name):
     seen["cones_after_undo"] = [item.order for item in obj.data.orbifold.cones]
 
 
+def suggested():
+    """Suggest Cones, and a row of its table."""
+    obj = blob(4)
+    obj.vertex_groups.new(name="Face")
+    obj.data.orbifold.keep_away = "Face"
+    edit_mode()
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bpy.ops.ed.undo_push(message="to suggest")
+    yield
+    with in_view():
+        seen["invoked_suggest"] = list(bpy.ops.mesh.orbifold_suggest_cones("INVOKE_DEFAULT", True))
+    table = obj.data.orbifold.suggestions
+    yield lambda: len(table.rows)
+    seen["mode_after_suggest"] = obj.mode
+    with in_view():
+        bpy.ops.mesh.orbifold_place_suggestion("INVOKE_DEFAULT", True, index=1)
+    seen["placed"] = [table.active, obj.data.orbifold.signature == table.rows[1].signature]
+    if picture != "-":
+        for area in areas("VIEW_3D"):
+            area.spaces.active.shading.type = "SOLID"
+        with in_view():
+            bpy.ops.mesh.orbifold_show_stretch()
+        object_mode()
+        yield from photographed("-table")
+        edit_mode()
+    with in_view():
+        bpy.ops.ed.undo()
+    yield
+    settings = bpy.context.object.data.orbifold
+    seen["after_undo"] = [len(settings.cones), settings.signature]
+
+
+def photographed(ending):
+    for _ in range(30):
+        yield
+    stem, dot, kind = picture.rpartition(".")
+    subprocess.run(["import", "-window", "root", stem + ending + dot + kind], check=True)
+
+
+def one_click():
+    """Unwrap with no cones: two jobs in turn, one undo step."""
+    obj = blob(4)
+    bpy.ops.ed.undo_push(message="bare")
+    yield
+    with in_view():
+        seen["invoked_bare"] = list(bpy.ops.uv.orbifold_unwrap("INVOKE_DEFAULT", True))
+    yield lambda: "Orbifold" in obj.data.uv_layers
+    seen["cones_of_one_click"] = len(obj.data.orbifold.cones)
+    with in_view():
+        bpy.ops.ed.undo()
+    yield
+    obj = bpy.context.object
+    seen["after_one_undo"] = [len(obj.data.uv_layers), len(obj.data.orbifold.cones), obj.data.orbifold.signature]
+
+
 def escaped():
     """Esc while a large mesh is computed."""
     obj = blob(8)
+    bpy.ops.ed.undo_push(message="large without cones")
+    yield
+    with in_view():
+        seen["invoked_suggest_large"] = list(bpy.ops.mesh.orbifold_suggest_cones("INVOKE_DEFAULT", True))
+    window().event_simulate(type="ESC", value="PRESS")
+    for _ in range(20):
+        yield
+    seen["rows_after_esc"] = len(obj.data.orbifold.suggestions.rows)
     set_cones(obj, "442")
     bpy.ops.ed.undo_push(message="large")
     yield
