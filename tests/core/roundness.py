@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The round sphere's conformal maps onto orbifolds, exactly: the log scale u and the spread of 2 u over the area.
 
-Cones are unit vectors. Plane: a harmonic function, u = -sum (1 - 1/n) log |x - c| + constant. Sphere: the orbifold's own
-sphere covers it by one of Klein's rational functions (docs/mathematics.md, section 7); points are taken evenly on that
+Cones are unit vectors. Plane: a harmonic function, u = -sum (1 - 1/n) log |x - c| + constant. Sphere: the orbifold's
+own sphere covers it by one of Klein's rational functions (docs/mathematics.md, section 7); points are taken evenly on that
 sphere, so that the integrand is bounded, and carry the area of their images."""
 
 import numpy as np

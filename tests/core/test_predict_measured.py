@@ -29,36 +29,53 @@ def mesh_of(name):
 
 
 def measure(name, signature, cones, weights="conformal"):
-    """The measured spread of log area; None where these cones are refused."""
+    """The measured spread of log area; not a number where these cones are refused."""
     try:
         result = core.embed(*mesh_of(name), signature, cones, weights=weights)
     except core.OrbifoldError as error:
         assert error.status in ("ORB_BAD_CONE", "ORB_NOT_CONVERGED"), error  # poles that share an edge, lost limbs
-        return None
+        return np.nan
     return result.report["distortion"]["log_area_std"]
+
+
+def in_pairs(work, over):
+    """Two at a time: the library lets go of Python's lock."""
+    with ThreadPoolExecutor(2) as pool:
+        return list(pool.map(work, over))
+
+
+def thrown(name, signature, count):
+    """Random cones; the first ones of a greater count are those of a smaller."""
+    random = np.random.default_rng(SEED)
+    return [random_cones(*mesh_of(name), signature, random) for _ in range(count)]
+
+
+@functools.lru_cache(maxsize=64)
+def random_predicted(name, signature, count):
+    """Of `thrown`, the spread each."""
+    cones = thrown(name, signature, count)
+    return np.array(in_pairs(lambda picked: core.predict(*mesh_of(name), signature, picked).spread, cones))
 
 
 @functools.lru_cache(maxsize=64)
 def random_measured(name, signature, count, weights="conformal"):
-    """[(cones, measured)]: the same random cones for all signatures of as many."""
-    mesh, random = mesh_of(name), np.random.default_rng(SEED)
-    picked = [random_cones(*mesh, signature, random) for _ in range(count)]
-    with ThreadPoolExecutor(2) as pool:
-        measured = list(pool.map(lambda cones: measure(name, signature, cones, weights), picked))
-    kept = [(cones, spread) for cones, spread in zip(picked, measured) if spread is not None]
-    assert len(kept) > 0.9 * count
-    return kept
+    """Of `thrown`, the spread each; not a number where they are refused."""
+    measured = in_pairs(lambda picked: measure(name, signature, picked, weights), thrown(name, signature, count))
+    assert np.isfinite(measured).sum() > 0.9 * count
+    return np.array(measured)
 
 
 def agreement(name, signature, count, weights="conformal"):
     """(correlation, slope through the origin, the text that says so)"""
-    kept = random_measured(name, signature, count, weights)
-    measured = np.array([spread for _, spread in kept])
-    said = np.array([core.predict(*mesh_of(name), signature, cones).spread for cones, _ in kept])
+    measured = random_measured(name, signature, count, weights)
+    kept = np.isfinite(measured)
+    measured, said = measured[kept], random_predicted(name, signature, count)[kept]
     correlation, slope = np.corrcoef(said, measured)[0, 1], said @ measured / (said @ said)
-    text = (f"{name} {signature} {weights}: {len(kept)} random cones, correlation {correlation:.5f}, slope {slope:.4f}, "
-            f"measured / predicted {np.min(measured / said):.3f} to {np.max(measured / said):.3f}, "
-            f"measured {measured.min():.2f} to {measured.max():.2f}")  # fmt: skip
+    text = (
+        f"{name} {signature} {weights}: {kept.sum()} random cones, correlation {correlation:.5f}, slope {slope:.4f}, "
+        f"measured / predicted {np.min(measured / said):.3f} to {np.max(measured / said):.3f}, "
+        f"measured {measured.min():.2f} to {measured.max():.2f}"
+    )
     print(text)
     return correlation, slope, text
 
@@ -90,11 +107,13 @@ def test_cotangents_follow_the_prediction_from_some_way_off(name, signature):
     assert correlation >= 0.95 and 0.85 < slope < 1.3, text
 
 
-@pytest.mark.parametrize("signature", ["33", "55"])
-def test_two_cones_are_followed_by_half(signature):
-    """The map may be dilated from cone to cone for nothing, and that is where the two of them differ."""
-    correlation, slope, text = agreement("spot.obj", signature, 30)
-    assert correlation >= 0.75 and 0.85 < slope < 1.2, text
+@pytest.mark.parametrize(
+    "name, signature", [("creature", "33"), ("spot.obj", "22"), ("spot.obj", "55"), ("disk", "*33"), ("bowl", "*55")]
+)
+def test_two_cones_and_the_dilation_of_least_spread(name, signature):
+    """The map may be dilated from cone to cone for nothing: both take the one that is best for the areas."""
+    correlation, slope, text = agreement(name, signature, 30)
+    assert correlation >= 0.97 and 0.93 < slope < 1.07, text
 
 
 # ------------------------------------------------------------------------------------------------- suggestions
@@ -102,35 +121,27 @@ def test_two_cones_are_followed_by_half(signature):
 LIKE = {"spherical": "432", "euclidean": "442", "hyperbolic": "237"}
 
 
-@functools.lru_cache(maxsize=8)
-def suggested(name):
-    return core.suggest_cones(*mesh_of(name))
+@functools.lru_cache(maxsize=16)
+def suggested(name, flat=False):
+    return core.suggest_cones(*mesh_of(name), flat=flat)
 
 
+@pytest.mark.parametrize("flat", [False, True], ids=["any", "flat"])
 @pytest.mark.parametrize("name", SUGGESTED)
-def test_the_best_suggestion_beats_200_random_triples(name):
-    """Of 442, and of the suggestion's own geometry."""
-    best = suggested(name)[0]
+def test_the_best_suggestion_beats_200_random_triples(name, flat):
+    """Of 442, all embedded, and of the suggestion's own geometry: there those 50 that promise most, of which the best
+    is one, as the tests above say."""
+    best = suggested(name, flat)[0]
     measured = measure(name, best.signature, best.cones)
-    rivals = {"442": random_measured(name, "442", 200)}
+    least = {"442": random_measured(name, "442", 200).min()}
     like = LIKE[core.geometry_of(best.signature)]
     if like != "442":
-        rivals[like] = promising(name, like)
-    for signature, kept in rivals.items():
-        least = min(spread for _, spread in kept)
-        text = f"{name}: {best.signature} {best.cones} measured {measured:.3f}, best random {signature} {least:.3f}"
-        print(text)
-        assert measured <= 1.1 * least, text
-
-
-def promising(name, signature):
-    """Of 200 random triples the 50 best predicted, measured: the best is one of them, as the tests above say."""
-    mesh, random = mesh_of(name), np.random.default_rng(SEED)
-    picked = [random_cones(*mesh, signature, random) for _ in range(200)]
-    picked.sort(key=lambda cones: core.predict(*mesh, signature, cones).spread)
-    with ThreadPoolExecutor(2) as pool:
-        measured = list(pool.map(lambda cones: measure(name, signature, cones), picked[:50]))
-    return [(cones, spread) for cones, spread in zip(picked, measured) if spread is not None]
+        promising = np.argsort(random_predicted(name, like, 200))[:50]
+        cones = thrown(name, like, 200)
+        least[like] = np.nanmin(in_pairs(lambda k: measure(name, like, cones[k]), promising))
+    text = f"{name}: {best.signature} {best.cones} measured {measured:.3f}, best random {least}"
+    print(text)
+    assert measured <= 1.1 * min(least.values()), text
 
 
 @pytest.mark.parametrize("signature", ["442", "432", "237"])
@@ -138,11 +149,9 @@ def promising(name, signature):
 def test_each_signature_s_suggestion_beats_random_triples_of_its_own(name, signature):
     """By prediction without any allowance: a search that loses against 200 throws of the dice is none."""
     (made,) = [s for s in suggested(name) if s.signature == signature]
-    mesh, random = mesh_of(name), np.random.default_rng(SEED)
-    thrown = [random_cones(*mesh, signature, random) for _ in range(200)]
-    least = min(core.predict(*mesh, signature, cones).spread for cones in thrown)
+    least = random_predicted(name, signature, 200).min()
     assert made.predicted <= least * (1 + 1e-9), (name, signature, made.predicted, least)
     measured = measure(name, signature, made.cones)
-    kept = random_measured(name, signature, COUNTS.get((name, signature), 50))
-    assert measured <= 1.1 * min(spread for _, spread in kept)
+    count = COUNTS.get((name, signature), 50)
+    assert measured <= 1.1 * np.nanmin(random_measured(name, signature, count))
     assert made.predicted == pytest.approx(measured, rel=0.03)

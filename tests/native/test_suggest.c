@@ -5,6 +5,7 @@
 #include <time.h>
 
 #include "check.h"
+#include "distortion.h"
 #include "orbifold_cones.h"
 #include "surfaces.h"
 
@@ -43,6 +44,7 @@ static bool *border_of(const sample_mesh *mesh) {
     return border;
 }
 
+/* The spread of log area, or, of a suggestion that was measured, what it is ranked by. */
 static double measured(const sample_mesh *mesh, const orb_suggestion *made, orb_status *status) {
     orb_mesh_arrays arrays = sample_arrays(mesh);
     orb_request request = orb_request_default();
@@ -55,8 +57,10 @@ static double measured(const sample_mesh *mesh, const orb_suggestion *made, orb_
     *status = orb_embed(&arrays, &request, &embedding, &error);
     if (*status == ORB_OK)
         orb_embedding_report(embedding, &report);
+    const double spread = made->measured && embedding ? distortion_spread(embedding) : report.log_area_std;
+    CHECK(*status != ORB_OK || spread >= report.log_area_std * (1 - 1e-9));
     orb_embedding_free(embedding);
-    return report.log_area_std;
+    return spread;
 }
 
 static double predicted(const sample_mesh *mesh, const orb_suggestion *made) {
