@@ -174,7 +174,8 @@ TEST(certified_and_better_on_many_surfaces) {
         CHECK(delaunay.report.relative_gradient < 1e-9);
         if (cases[i].k ==
             2) /* the free dilation is chosen for the areas: no longer the minimum, and no weights to show */
-            CHECK(!conformal.has_weights && conformal.report.log_area_std <= delaunay.report.log_area_std);
+            printf("%d %g %g\n", conformal.has_weights, conformal.report.log_area_std, delaunay.report.log_area_std),
+                CHECK(!conformal.has_weights && conformal.report.log_area_std <= delaunay.report.log_area_std);
         else
             CHECK(conformal.report.relative_gradient < 1e-9);
         free(plain.length), free(conformal.length), free(delaunay.length);
