@@ -3,7 +3,7 @@
 """docs/cones.md and docs/cones.svg, measured:   ./build.sh docs cones
 
 Random cones are embedded once and kept in build/cones, so that a run that was stopped goes on where it was; from nothing
-it takes about an hour of two cores. Meshes of ../shared/meshes that are not there are left out."""
+it takes half an hour of two cores. Meshes of ../shared/meshes that are not there are left out."""
 
 import json
 import sys
@@ -166,7 +166,8 @@ def agreement_rows(studies):
     for found in studies:
         cells = []
         for signature in SIGNATURES:
-            both = [(p, row[2]) for p, row in zip(found["predicted"], found["random"]) if row[0].lstrip("*") == signature]
+            pairs = zip(found["predicted"], found["random"])
+            both = [(said, row[2]) for said, row in pairs if row[0].lstrip("*") == signature]
             said, spread = np.array(both).T
             slope = said @ spread / (said @ said)
             cells.append(f"{_below_one(np.corrcoef(said, spread)[0, 1])}, {slope:.3f}")
@@ -204,8 +205,9 @@ def picture(studies, size=480, margin=36):
     lines.append(f'<text x="10" y="{margin - 14}">measured</text>')
     for k, (signature, dots) in enumerate(points.items()):
         path = "".join(f"M{at(*dot)}h0" for dot in dots)
-        lines.append(f'<path d="{path}" stroke="{COLOURS[signature]}" stroke-width="2.5" stroke-linecap="round" opacity="0.6"/>')
-        lines.append(f'<text x="{margin + 12}" y="{margin + 6 + 16 * k}" fill="{COLOURS[signature]}">{signature}</text>')
+        colour = COLOURS[signature]
+        lines.append(f'<path d="{path}" stroke="{colour}" stroke-width="2" stroke-linecap="round" opacity="0.6"/>')
+        lines.append(f'<text x="{margin + 12}" y="{margin + 6 + 16 * k}" fill="{colour}">{signature}</text>')
     return "\n".join([*lines, "</svg>"]) + "\n"
 
 
