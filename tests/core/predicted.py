@@ -50,10 +50,16 @@ class Surface:
 def random_cones(vertices, triangles, signature, random):
     """Distinct random vertices for every cone and corner, in the signature's sequence; mirror i on the i-th longest
     boundary loop, its corners in turn."""
+    return next(random_choices(vertices, triangles, signature, random))
+
+
+def random_choices(vertices, triangles, signature, random):
+    """`random_cones` again and again."""
     wanted, loops = features(signature), boundary_loops(triangles)
     free = np.setdiff1d(triangles, [v for loop in loops for v in loop])
-    cones = random.choice(free, len(wanted.cones), replace=False).tolist()
-    for loop, corners in zip(loops, wanted.mirrors):
-        places = np.sort(random.choice(len(loop), len(corners), replace=False))
-        cones += [loop[at] for at in places]
-    return cones
+    while True:
+        cones = random.choice(free, len(wanted.cones), replace=False).tolist()
+        for loop, corners in zip(loops, wanted.mirrors):
+            places = np.sort(random.choice(len(loop), len(corners), replace=False))
+            cones += [loop[at] for at in places]
+        yield cones

@@ -3,6 +3,7 @@
 that are really embedded, on meshes of ours and on shared ones."""
 
 import functools
+import itertools
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 import shapes
 from creatures import creature
 from meshes import shared_file
-from predicted import random_cones
+from predicted import random_choices
 
 import core
 
@@ -44,10 +45,11 @@ def in_pairs(work, over):
         return list(pool.map(work, over))
 
 
+@functools.lru_cache(maxsize=64)
 def thrown(name, signature, count):
     """Random cones; the first ones of a greater count are those of a smaller."""
-    random = np.random.default_rng(SEED)
-    return [random_cones(*mesh_of(name), signature, random) for _ in range(count)]
+    choices = random_choices(*mesh_of(name), signature, np.random.default_rng(SEED))
+    return list(itertools.islice(choices, count))
 
 
 @functools.lru_cache(maxsize=64)
@@ -81,29 +83,30 @@ def agreement(name, signature, count, weights="conformal"):
 
 
 SUGGESTED = ["creature", "spot.obj", "fandisk.off", "bunny.obj"]
-COUNTS = {(name, "442"): 200 for name in SUGGESTED}  # those of the last tests, too; 50 otherwise
-CASES = [
-    *[(name, s) for name in SUGGESTED for s in ("442", "432", "237")],
-    *[("creature", s) for s in ("333", "632", "2222", "532", "332", "222", "22(5)", "334", "444")],
-    *[("rough creature", s) for s in ("442", "432", "237", "2222")],
-    *[("disk", s) for s in ("*442", "*432", "*237", "*333", "*2222", "*222", "*334")],
-    *[("disk", s) for s in ("4*2", "3*2", "5*3", "3*3", "2*22", "22*")],
-    *[("bowl", s) for s in ("*442", "*432", "*237", "4*2", "3*2", "5*3")],
-    *[("hemisphere.obj", s) for s in ("*442", "*237", "4*2")],
-    ("spot.obj", "2222"),
-]
+MOST = {(name, "442"): 200 for name in SUGGESTED}  # those of the last tests, too
+CASES = {
+    **{(name, s): 50 for name in SUGGESTED for s in ("442", "432", "237")},
+    **{("creature", s): 25 for s in ("333", "632", "2222", "532", "332", "222", "22(5)", "334", "444")},
+    **{("rough creature", s): 25 for s in ("442", "432", "237", "2222")},
+    **{("disk", s): 50 for s in ("*442", "*432", "*237", "4*2")},
+    **{("disk", s): 25 for s in ("*333", "*2222", "*222", "*334", "3*2", "5*3", "3*3", "2*22", "22*")},
+    **{("bowl", s): 25 for s in ("*442", "*432", "*237", "4*2", "3*2", "5*3")},
+    **{("hemisphere.obj", s): 25 for s in ("*442", "*237", "4*2")},
+    ("spot.obj", "2222"): 50,
+    **MOST,
+}
 
 
 @pytest.mark.parametrize("name, signature", CASES)
 def test_predicted_spread_is_the_measured_one(name, signature):
-    correlation, slope, text = agreement(name, signature, COUNTS.get((name, signature), 50))
+    correlation, slope, text = agreement(name, signature, CASES[name, signature])
     assert correlation >= 0.99 and 0.97 < slope < 1.03, text
 
 
 @pytest.mark.parametrize("name", ["creature", "rough creature", "spot.obj"])
 @pytest.mark.parametrize("signature", ["442", "432", "237"])
 def test_cotangents_follow_the_prediction_from_some_way_off(name, signature):
-    correlation, slope, text = agreement(name, signature, 50, "cotan")
+    correlation, slope, text = agreement(name, signature, 25, "cotan")
     assert correlation >= 0.95 and 0.85 < slope < 1.3, text
 
 
@@ -113,7 +116,7 @@ def test_cotangents_follow_the_prediction_from_some_way_off(name, signature):
 def test_two_cones_and_the_dilation_of_least_spread(name, signature):
     """The map may be dilated from cone to cone for nothing: both take the one that is best for the areas."""
     correlation, slope, text = agreement(name, signature, 30)
-    assert correlation >= 0.97 and 0.93 < slope < 1.07, text
+    assert correlation >= 0.99 and 0.97 < slope < 1.03, text
 
 
 # ------------------------------------------------------------------------------------------------- suggestions
@@ -152,6 +155,5 @@ def test_each_signature_s_suggestion_beats_random_triples_of_its_own(name, signa
     least = random_predicted(name, signature, 200).min()
     assert made.predicted <= least * (1 + 1e-9), (name, signature, made.predicted, least)
     measured = measure(name, signature, made.cones)
-    count = COUNTS.get((name, signature), 50)
-    assert measured <= 1.1 * np.nanmin(random_measured(name, signature, count))
+    assert measured <= 1.1 * np.nanmin(random_measured(name, signature, CASES[name, signature]))
     assert made.predicted == pytest.approx(measured, rel=0.03)
