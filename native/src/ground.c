@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "picks.h"
 #include "triangle.h"
 
 /* A quarter of the given weights, as the form is a quarter of the variance of log area. */
@@ -37,8 +36,6 @@ orb_status ground_create(const orb_mesh *mesh, int32_t n_given, const double *ke
     if (!ground->penalty || !ground->fixed)
         return error_memory(error);
     orb_status status = boundary_list(mesh, &ground->boundary, error);
-    if (status == ORB_OK)
-        status = picks_check(mesh, n_fixed, fixed, error);
     if (status == ORB_OK)
         status = weigh(ground, n_given, keep_away, error);
     if (status != ORB_OK)
