@@ -84,7 +84,7 @@ def _enter(mode: str, together: list[bpy.types.Object]) -> None:
 def edited(context: bpy.types.Context) -> list[bpy.types.Object]:
     """The mesh objects in edit mode, of those that share a mesh one only, the active one first; in other modes the
     active object."""
-    active = context.view_layer.objects.active
+    active = context.active_object
     if active is None or active.mode != "EDIT":
         return [active] if active is not None and active.type == "MESH" else []
     found = {active.data: active} if active.type == "MESH" else {}

@@ -65,12 +65,14 @@ class UV_OT_orbifold_unwrap(UVOperator, bpy.types.Operator):
         objects = blender_mesh.edited(context)
         self._several = len(objects) > 1
         with blender_mesh.object_mode(context.active_object):
-            self._arrays = blender_mesh.read_mesh(context.active_object.data)
             for obj in objects:
                 try:
                     self._left.append(Unwrapping(obj, self.settings_of(obj.data)))
                 except EXPECTED as error:
                     self._failures.append((obj, error))
+            active = context.active_object
+            known = next((work.arrays for work in self._left if work.obj == active), None)
+            self._arrays = known or blender_mesh.read_mesh(active.data)
         pieces = [piece for work in self._left for piece in work.pieces]
         self._searched = any(piece.missing is not None and piece.missing.signature is None for piece in pieces)
         mirrors = [(len(piece.surface.loops), _mirrors(piece.signature)) for piece in pieces]

@@ -6,6 +6,7 @@ from __future__ import annotations
 import bpy
 
 from .. import arrangement, core, previews, properties, surface
+from ..operators.jobs import mesh_problem
 
 GEOMETRIES = (("euclidean", "Euclidean"), ("spherical", "Spherical"), ("hyperbolic", "Hyperbolic"))
 
@@ -73,17 +74,25 @@ def draw_entries(self, _context: bpy.types.Context) -> None:
 
 
 class VIEW3D_MT_orbifold(bpy.types.Menu):
-    """All operators that make sense without a row of a list: in a menu so that F3 finds them in every mode."""
+    """All operators: what is in a menu is found by F3, in every mode."""
 
     bl_idname = "VIEW3D_MT_orbifold"
     bl_label = "Orbifold"
 
-    def draw(self, _context: bpy.types.Context) -> None:
+    def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         for group in MENU_GROUPS:
             for name in group:
                 layout.operator(name)
             layout.separator()
+        layout.operator_menu_enum("mesh.orbifold_show_defect", "kind")
+        layout.operator_menu_enum("mesh.orbifold_mend", "kind")
+        if mesh_problem(context) is None:
+            layout.separator()
+            layout.menu(MESH_MT_orbifold_signatures.bl_idname)
+            for index, row in enumerate(context.active_object.data.orbifold.suggestions.rows):
+                text = f"Place Suggestion {row.signature}"
+                layout.operator("mesh.orbifold_place_suggestion", text=text).index = index
 
 
 def draw_submenu(self, _context: bpy.types.Context) -> None:
