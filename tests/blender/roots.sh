@@ -4,6 +4,7 @@
 # usage: roots.sh make RELEASE              makes build/roots/RELEASE, unless it is there and complete
 #        roots.sh in RELEASE COMMAND...     runs COMMAND there, in the checkout's folder, without a network
 #        roots.sh releases                  the names of those that tests are run in
+#        roots.sh complete                  of these, the names of those that can be used at once
 #
 # What cannot be done is said in one line on stderr, with status 1. The packages come from the archive that this
 # system's apt is set up for. Everything runs in namespaces of its own for mounts and processes: nothing stays mounted
@@ -23,7 +24,7 @@ packages=(blender libgl1 libegl1 libglx-mesa0 libegl-mesa0 libgl1-mesa-dri pytho
 
 # ---- namespaces
 
-isolated() { unshare --mount --propagation private --pid --fork --kill-child "$@"; }
+isolated=(unshare --mount --propagation private --pid --fork --kill-child)
 
 # The root that is made, and the processes in it, see the devices of this system, and their own processes only.
 mount_system() {
@@ -32,11 +33,15 @@ mount_system() {
     mount --rbind /dev "$1/dev"
 }
 
-# As process 1 of its namespace, bash hears no signal that it does not trap, and traps wait for what is in front.
-wait_for() {
-    trap 'exit 143' INT TERM HUP
-    "$@" &
-    wait $!
+# interruptibly COMMAND...: in namespaces; a signal ends it and all that it started (SIGKILL: process 1 of a namespace
+# hears nothing else from outside). A trap runs at once only while bash waits for what is in the background.
+interruptibly() {
+    local status=0
+    "${isolated[@]}" "$@" </dev/null &
+    trap "kill -KILL $! 2>/dev/null; wait $! 2>/dev/null || true; exit 143" INT TERM HUP
+    wait $! || status=$?
+    trap - INT TERM HUP
+    return $status
 }
 
 # ---- make
@@ -47,13 +52,12 @@ archive_of_apt() {
 }
 
 make_root() {
-    local release=$1 uri log=$roots/$1.log key
-    can_make
+    local release=$1 uri log=$roots/$1.log
     mkdir -p "$roots"
+    can_make
     exec 9>"$roots/$release.lock"       # two at once: the second one waits, and finds it made
     flock 9
-    key="$release ${packages[*]}"
-    [ "$(cat "$roots/$release.complete" 2>/dev/null)" != "$key" ] || return 0
+    ! is_complete "$release" || return 0
     uri=$(archive_of_apt)
     if [ -z "$uri" ]; then              # package lists are absent
         apt-get update >"$log" 2>&1 || true
@@ -66,16 +70,33 @@ make_root() {
     rm -f "$roots/$release.InRelease" "$roots/$release.complete"
     rm -rf --one-file-system "${roots:?}/$release"
     echo "making build/roots/$release, a few minutes, once"
-    isolated bash "$here/roots.sh" made "$release" "${uri%/}" >"$log" 2>&1 </dev/null ||
+    interruptibly bash "$here/roots.sh" made "$release" "${uri%/}" >"$log" 2>&1 ||
         die "build/roots/$release could not be made: $(grep -m 1 '^E: ' "$log" || tail -n 1 "$log")"
-    echo "$key" >"$roots/$release.complete"
+    stamp "$release" >"$roots/$release.complete"
+}
+
+stamp() { echo "$1 ${packages[*]}"; }
+is_complete() { [ "$(cat "$roots/$1.complete" 2>/dev/null)" = "$(stamp "$1")" ]; }
+
+complete() {
+    local release
+    [ "$(id -u)" = 0 ] && "${isolated[@]}" true 2>/dev/null || return 0
+    for release in "${releases[@]}"; do
+        if is_complete "$release"; then echo "$release"; fi
+    done
 }
 
 can_make() {
     [ "$(id -u)" = 0 ] || die "this takes root"
-    isolated true 2>/dev/null || die "mount namespaces are not allowed here"
-    command -v debootstrap >/dev/null || die "there is no debootstrap"
+    "${isolated[@]}" true 2>/dev/null || die "mount namespaces are not allowed here"
     command -v apt-get >/dev/null || die "there is no apt-get"
+    command -v debootstrap >/dev/null || install_debootstrap >"$roots/debootstrap.log" 2>&1 ||
+        die "there is no debootstrap, and apt could not install it"
+}
+
+install_debootstrap() {
+    local install=(env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends debootstrap)
+    "${install[@]}" || { apt-get update && "${install[@]}"; }
 }
 
 # In the namespaces. wget and the apt inside take proxies from the environment.
@@ -86,6 +107,7 @@ made() {
     debootstrap --variant=minbase "$release" "$root" "$uri"
     cp /etc/resolv.conf "$root/etc/resolv.conf"
     echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/quick"
+    ln -s /proc/self/mounts "$root/etc/mtab"                           # Blender reads it
     printf '#!/bin/sh\nexit 101\n' >"$root/usr/sbin/policy-rc.d"       # no service starts
     chmod +x "$root/usr/sbin/policy-rc.d"
     mount_system "$root"
@@ -99,13 +121,12 @@ made() {
 # ---- in
 
 run_in() {
-    local release=$1 scratch status=0
+    local release=$1 scratch
     shift
-    [ -e "$roots/$release.complete" ] || die "build/roots/$release is not there: roots.sh make $release"
+    is_complete "$release" || die "build/roots/$release is not there: roots.sh make $release"
     scratch=$(mktemp -d)
     trap "rm -rf --one-file-system '$scratch'" EXIT
-    isolated --net bash "$here/roots.sh" inside "$release" "$scratch" "$@" || status=$?
-    return $status
+    interruptibly --net bash "$here/roots.sh" inside "$release" "$scratch" "$@"
 }
 
 # In the namespaces: the checkout, and the folder with meshes beside it, stand where they stand outside.
@@ -121,7 +142,8 @@ inside() {
         mkdir -p "$root$(dirname "$checkout")/shared"
         mount --bind "$shared" "$root$(dirname "$checkout")/shared"
     fi
-    wait_for chroot "$root" env -u DISPLAY -u XAUTHORITY -u XDG_RUNTIME_DIR -u TMPDIR -u PYTHONPATH -u PYTHONHOME HOME=/tmp \
+    unset DISPLAY XAUTHORITY XDG_RUNTIME_DIR TMPDIR PYTHONPATH PYTHONHOME
+    chroot "$root" env HOME=/tmp \
         PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
         sh -c 'cd "$0" && exec "$@"' "$checkout" "$@"
 }
@@ -132,8 +154,9 @@ main() {
     case $verb in
         make) make_root "$1" ;;
         in) run_in "$@" ;;
-        made | inside) wait_for "$verb" "$@" ;;
+        made | inside) "$verb" "$@" ;;
         releases) printf '%s\n' "${releases[@]}" ;;
+        complete) complete ;;
         *) die "usage: roots.sh make RELEASE | in RELEASE COMMAND... | releases" ;;
     esac
 }
