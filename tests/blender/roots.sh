@@ -53,7 +53,6 @@ archive_of_apt() {
 
 make_root() {
     local release=$1 uri log=$roots/$1.log
-    mkdir -p "$roots"
     can_make
     exec 9>"$roots/$release.lock"       # two at once: the second one waits, and finds it made
     flock 9
@@ -88,6 +87,7 @@ complete() {
 
 can_make() {
     [ "$(id -u)" = 0 ] || die "this takes root"
+    mkdir -p "$roots"
     "${isolated[@]}" true 2>/dev/null || die "mount namespaces are not allowed here"
     command -v apt-get >/dev/null || die "there is no apt-get"
     command -v debootstrap >/dev/null || install_debootstrap >"$roots/debootstrap.log" 2>&1 ||
