@@ -5,8 +5,12 @@
 #                   [--weights conformal|cotan|delaunay|mean-value|mean-value-exact|uniform]
 #                   [--holes refuse|fill|mirror] [--output DIR] [--files ENDINGS] [--export] [--blender PATH]
 #   ./build.sh test [--blender PATH]      everything; ends with `N passed, N failed`
-#   ./build.sh native                     build the library only, into addon/core/
-#   ./build.sh package                    build/orbifold_uv-VERSION.zip, to install in Blender
+#   ./build.sh test --all                 the same, and what is tested in Blender also in 4.3 and 5.2, in roots of other
+#                                         releases of Debian (build/roots/, made once: takes root and a network)
+#   ./build.sh test --all-if-possible     the same; where a root cannot be made, a line says why, and nothing fails
+#   ./build.sh native                     build the library only, into addon/core/ (macOS, Windows: docs/building.md)
+#   ./build.sh package [--blender PATH]   build/orbifold_uv-VERSION.zip, to install in Blender, and build/repository/,
+#                                         an extension repository that Blender 4.2 and later can subscribe to
 #   ./build.sh bench [ROUNDS [MESHES]]    seconds of each stage on several meshes
 #   ./build.sh docs [--blender PATH]      the pictures of the documentation
 #   ./build.sh docs cones                 the tables of docs/cones.md, measured (an hour)
@@ -20,7 +24,9 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 build=$root/build
 verbose=${VERBOSE:-}
 jobs=$(nproc 2>/dev/null || echo 2)
+roots=$root/tests/blender/roots.sh
 blender=""                              # --blender, made absolute
+all=""                                  # --all: always; --all-if-possible: possible
 arguments=()                            # the command line without verb and --blender
 
 die() { echo "error: $*" >&2; exit 1; }
@@ -41,6 +47,17 @@ want() {
 }
 
 want_native() {
+    local package
+    case $(uname -s) in                 # never run on these two; native/platform.mk, docs/building.md
+        Darwin)
+            brew list suite-sparse >/dev/null 2>&1 || missing+=(suite-sparse)
+            return ;;
+        MINGW* | MSYS*)
+            for package in make "$MINGW_PACKAGE_PREFIX"-{gcc,openblas,suitesparse,python}; do
+                pacman -Q "$package" >/dev/null 2>&1 || missing+=("$package")
+            done
+            return ;;
+    esac
     want gcc "${CC:-cc}"
     want make make
     want patch patch
@@ -75,6 +92,10 @@ want_docs() {
 install_missing() {
     [ ${#missing[@]} -gt 0 ] || return 0
     local log=$build/apt.log root_shell=()
+    case $(uname -s) in
+        Darwin) brew install "${missing[@]}"; missing=(); return ;;
+        MINGW* | MSYS*) pacman -S --needed --noconfirm "${missing[@]}"; missing=(); return ;;
+    esac
     command -v apt-get >/dev/null || die "please install ${missing[*]}: there is no apt-get here to do it"
     if [ "$(id -u)" != 0 ]; then
         command -v sudo >/dev/null || die "please install ${missing[*]}: this takes root, and there is no sudo here"
@@ -134,9 +155,11 @@ run() {
 show_run() { if [ -n "$verbose" ]; then cat; else sed -u -n 's/^orbifold: //p'; fi; }
 
 package() {
-    local version zip folder=$build/package/orbifold_uv
-    [ -n "$(find_python zipfile)" ] || want python3
+    local version zip python platforms folder=$build/package/orbifold_uv
+    [ -n "$(find_python tomllib zipfile)" ] || want python3
     native
+    python=$(find_python tomllib zipfile)
+    [ -n "$python" ] || die "packaging takes Python 3.11 or later"
     version=$(sed -n 's/^version *= *"\([^"]*\)".*/\1/p' "$root/addon/blender_manifest.toml")
     [ -n "$version" ] || die "addon/blender_manifest.toml names no version"
     zip=$build/orbifold_uv-$version.zip
@@ -145,10 +168,47 @@ package() {
     cp -R "$root/addon/." "$root/LICENSE" "$folder/"
     cp -R "$build/suitesparse/licenses" "$folder/" 2>/dev/null || true
     find "$folder" \( -name __pycache__ -o -name '.*' -o -name '*.blend1' -o -name '*~' \) -prune -exec rm -rf {} +
-    find "$folder" -exec touch -d '2000-01-01 00:00Z' {} +
-    (cd "$build/package" && "$(find_python zipfile)" -m zipfile -c "$zip" orbifold_uv)
+    platforms=$("$python" "$root/docs/packaging.py" platforms "$folder/core")
+    sed "s/^platforms = .*/platforms = $platforms/" "$root/addon/blender_manifest.toml" >"$folder/blender_manifest.toml"
+    find "$folder" -exec env TZ=UTC touch -t 200001010000 {} +
+    (cd "$build/package" && "$python" -m zipfile -c "$zip" orbifold_uv)
     echo "${zip#"$PWD"/}"
+    repository "$zip" "$python"
 }
+
+# repository ZIP PYTHON: a folder with the zip and an index of it, by Blender itself if it can. Its check first.
+repository() {
+    local folder=$build/repository log=$build/repository.log server
+    mapfile -t server < <(extension_blender)
+    rm -rf "$folder"
+    mkdir -p "$folder"
+    cp "$1" "$folder/"
+    if [ ${#server[@]} = 0 ]; then
+        "$2" "$root/docs/packaging.py" index "$folder" >/dev/null
+    else
+        "${server[@]}" --command extension validate "$folder/$(basename "$1")" >"$log" 2>&1 </dev/null &&
+            "${server[@]}" --command extension server-generate --repo-dir "$folder" >>"$log" 2>&1 </dev/null ||
+            { cat "$log" >&2; die "Blender does not take the package"; }
+    fi
+    folder=$folder/
+    echo "${folder#"$PWD"/}"
+}
+
+# How to start a Blender that has extensions, a word a line: the one that was named, the system's, or one of the roots.
+extension_blender() {
+    local program=${blender:-$(command -v blender || true)} version release
+    if [ -n "$program" ]; then
+        version=$(version_of "$program")
+        if [ "$(printf '%s\n' 4.2 "$version" | sort -V | sed 1q)" = 4.2 ]; then echo "$program"; return; fi
+    fi
+    for release in $(bash "$roots" complete); do
+        printf '%s\n' bash "$roots" in "$release" blender
+        return
+    done
+}
+
+# version_of BLENDER...
+version_of() { "$@" --version 2>/dev/null </dev/null | sed -n 's/^Blender \([0-9.]*\).*/\1/p'; }
 
 bench() { native; make_native bench; "$build/native/bench" "${arguments[@]}"; }
 
@@ -165,11 +225,12 @@ docs() {
     ORBIFOLD_BLENDER=$(find_blender) ORBIFOLD_PYTHON=$(find_python numpy) bash "$root/docs/make_pictures.sh" "${arguments[@]}"
 }
 
-clean() { rm -rf "$build" "$root/out" "$root/addon/core/liborbifold.so"; }
+clean() { rm -rf --one-file-system "$build" "$root/out" "$root"/addon/core/liborbifold.{so,dylib,dll}; }
 
 # ---- test
 
 passed=0 failed=0 skipped=0
+versions=()                             # a line for each Blender
 
 fail() { echo "FAIL $*"; failed=$((failed + 1)); }
 
@@ -198,13 +259,15 @@ c_programs() {
     done
 }
 
-# python_tests FOLDER: pytest's report is the count.
+# python_tests FOLDER [RELEASE]: here, or in the root of a release of Debian; pytest's report is the count.
 python_tests() {
-    local report=$build/$1.xml status=0 total bad left_out
+    local report=$build/$1${2:+-$2}.xml status=0 total bad left_out python
     compgen -G "$root/tests/$1/test_*.py" >/dev/null || return 0
-    echo "-- tests/$1"
+    echo "-- tests/$1${2:+ in Debian $2}"
     rm -f "$report"
-    (cd "$root" && PYTHONDONTWRITEBYTECODE=1 timeout 3000 "$(find_python numpy pytest)" -m pytest -p no:cacheprovider \
+    python=("$(find_python numpy pytest)")
+    [ -z "${2:-}" ] || python=(bash "$roots" in "$2" env ORBIFOLD_BLENDER=/usr/bin/blender /usr/bin/python3)
+    (cd "$root" && PYTHONDONTWRITEBYTECODE=1 timeout 3000 "${python[@]}" -m pytest -p no:cacheprovider \
         -q -rs --junitxml "$report" "tests/$1") </dev/null || status=$?
     if [ ! -s "$report" ]; then fail "tests/$1: pytest left no report, status $status"; return; fi
     total=$(report_count tests "$report") left_out=$(report_count skipped "$report")
@@ -215,6 +278,31 @@ python_tests() {
 
 report_count() { grep -o '<testsuite [^>]*' "$2" | grep -o " $1=\"[0-9]*\"" | tr -dc 0-9; }
 
+# blender_tests BLENDER [RELEASE]
+blender_tests() {
+    local before=($passed $failed $skipped) version
+    python_tests blender "${@:2}"
+    if [ $# = 1 ]; then version=$(version_of "$1"); else version="$(version_of bash "$roots" in "$2" "$1") (Debian $2)"; fi
+    versions+=("Blender $version: $(counts $((passed - before[0])) $((failed - before[1])) $((skipped - before[2])))")
+}
+
+# The Blenders of other releases of Debian.
+other_blenders() {
+    local release reason
+    for release in $(bash "$roots" releases); do
+        if { reason=$(bash "$roots" make "$release" 2>&1 >&3); } 3>&1; then
+            blender_tests blender "$release"
+        elif [ "$all" = always ]; then
+            fail "Blender of Debian $release: ${reason#error: }"
+        else
+            echo "skip Blender of Debian $release: ${reason#error: }"
+            skipped=$((skipped + 1))
+        fi
+    done
+}
+
+counts() { echo "$1 passed, $2 failed$([ "$3" = 0 ] || echo ", $3 skipped")"; }
+
 run_tests() {
     want_tests
     install_missing
@@ -222,17 +310,19 @@ run_tests() {
     c_programs test "$build/native"
     export ASAN_OPTIONS=exitcode=99 UBSAN_OPTIONS=print_stacktrace=1
     c_programs test-asan "$build/native/asan"
-    if "$root/build.sh" package; then
+    if "$root/build.sh" package ${blender:+--blender "$blender"}; then
         program exports bash "$root/tests/native/exports.sh" "$root/addon/core/liborbifold.so"
         ORBIFOLD_BLENDER=$(find_blender)
         ORBIFOLD_ZIP=$(echo "$build"/orbifold_uv-*.zip)
         export ORBIFOLD_BLENDER ORBIFOLD_ZIP
         python_tests core
-        python_tests blender
+        blender_tests "$ORBIFOLD_BLENDER"
+        [ -z "$all" ] || other_blenders
     else
         fail "package"
     fi
-    echo "$passed passed, $failed failed$([ $skipped = 0 ] || echo ", $skipped skipped")"
+    [ -z "$all" ] || [ ${#versions[@]} = 0 ] || printf '%s\n' "${versions[@]}"
+    counts $passed $failed $skipped
     [ $failed = 0 ]
 }
 
@@ -245,6 +335,10 @@ main() {
         case $1 in
             --blender) [ $# -gt 1 ] || die "--blender needs a path"; blender=$2; shift 2 ;;
             --blender=*) blender=${1#*=}; shift ;;
+            --all | --all-if-possible)
+                [ "$verb" = test ] || die "$1 goes with test"
+                case $1 in --all) all=always ;; *) all=possible ;; esac
+                shift ;;
             *) arguments+=("$1"); shift ;;
         esac
     done

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """native/include/orbifold.h and orbifold_cones.h, declared for Python. Nothing else in the add-on uses ctypes.
 
-`library()` loads liborbifold.so from this folder at the first call. Names and the sequence of fields are the
+`library()` loads it from this folder at the first call. Names and the sequence of fields are the
 headers'; tests/core/test_binding.py compares them with what a C compiler makes of them."""
 
 from __future__ import annotations
 
 import ctypes
 import functools
+import sys
 import weakref
 from collections.abc import Callable, Sequence
 from ctypes import POINTER, Structure, c_bool, c_char, c_char_p, c_double, c_int, c_int32, c_int64, c_void_p
@@ -18,7 +19,8 @@ import numpy as np
 from .errors import OrbifoldError
 
 VERSION = "0.2.0"
-LIBRARY = Path(__file__).with_name("liborbifold.so")
+NAMES = {"win32": "liborbifold.dll", "darwin": "liborbifold.dylib"}  # by sys.platform; else
+LIBRARY = Path(__file__).with_name(NAMES.get(sys.platform, "liborbifold.so"))
 
 OK = 0
 MAX_ELEMENTS = 16

@@ -23,7 +23,11 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+#ifdef _WIN32
+#define ORB_API __declspec(dllexport)
+#else
 #define ORB_API __attribute__((visibility("default")))
+#endif
 typedef enum orb_status {
     ORB_OK = 0,
     ORB_OUT_OF_MEMORY,
