@@ -13,7 +13,7 @@ bl_info = {
 
 import bpy
 
-from . import handlers, operators, panels, preferences, previews, properties, surface
+from . import handlers, operators, panels, preferences, previews, properties, surface, viewing
 from .panels import menus
 
 CLASSES = (*preferences.CLASSES, *operators.CLASSES, *panels.CLASSES)
@@ -25,9 +25,11 @@ def register() -> None:
         bpy.utils.register_class(cls)
     menus.register()
     handlers.register()
+    viewing.register()
 
 
 def unregister() -> None:
+    viewing.unregister()
     handlers.unregister()
     menus.unregister()
     previews.clear()

@@ -276,23 +276,24 @@ def read_shape_key(obj: bpy.types.Object, name: str = SHAPE_KEY) -> np.ndarray:
 # ------------------------------------------------------------------------------------------------ attributes
 
 
-def read_int_attribute(mesh: bpy.types.Mesh, name: str) -> Optional[np.ndarray]:
-    """(n,) int32 of a whole-number vertex attribute; None where the mesh has none of this name."""
+def read_int_attribute(mesh: bpy.types.Mesh, name: str, domain: str = "POINT") -> Optional[np.ndarray]:
+    """(n,) int32 of a whole-number attribute of the vertices, or of the edges; None where the mesh has none of this
+    name."""
     attribute = mesh.attributes.get(name)
-    if attribute is None or attribute.domain != "POINT" or attribute.data_type != "INT":
+    if attribute is None or attribute.domain != domain or attribute.data_type != "INT":
         return None
-    values = np.empty(len(mesh.vertices), np.int32)
+    values = np.empty(len(mesh.edges if domain == "EDGE" else mesh.vertices), np.int32)
     attribute.data.foreach_get("value", values)
     return values
 
 
-def write_int_attribute(mesh: bpy.types.Mesh, name: str, values: np.ndarray) -> None:
+def write_int_attribute(mesh: bpy.types.Mesh, name: str, values: np.ndarray, domain: str = "POINT") -> None:
     attribute = mesh.attributes.get(name)
-    if attribute is not None and (attribute.domain != "POINT" or attribute.data_type != "INT"):
+    if attribute is not None and (attribute.domain != domain or attribute.data_type != "INT"):
         mesh.attributes.remove(attribute)
         attribute = None
     if attribute is None:
-        attribute = mesh.attributes.new(name, "INT", "POINT")
+        attribute = mesh.attributes.new(name, "INT", domain)
     attribute.data.foreach_set("value", np.ascontiguousarray(values, np.int32))
 
 

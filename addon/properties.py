@@ -15,7 +15,7 @@ from typing import Optional
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
 
-from . import arrangement, cones, core, suggestions, surface
+from . import arrangement, cones, core, layouts, suggestions, surface
 
 NEW_ORDER = 2
 HOLES = (
@@ -170,9 +170,12 @@ class OrbifoldMesh(bpy.types.PropertyGroup):
         "1 there is never one",
     )
     suggestions: PointerProperty(type=suggestions.OrbifoldSuggestions)
+    layouts: CollectionProperty(type=layouts.OrbifoldLayout)
+    colour_before: StringProperty(options={"HIDDEN"})  # the active colour attribute before a heat map
+    unwraps: IntProperty(options={"HIDDEN"})  # how many there were: tells drawings that there is a new one
 
 
-CLASSES = (OrbifoldCone, *suggestions.CLASSES, OrbifoldMesh)
+CLASSES = (OrbifoldCone, *suggestions.CLASSES, *layouts.CLASSES, OrbifoldMesh)
 
 
 def register() -> None:

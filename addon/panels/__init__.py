@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sidebar and menus."""
 
-from . import menus, sidebar
+from . import menus, sidebar, viewing
 
-CLASSES = (*menus.CLASSES, *sidebar.CLASSES)
+CLASSES = (*menus.CLASSES, *sidebar.CLASSES, *viewing.CLASSES)
