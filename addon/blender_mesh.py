@@ -8,7 +8,7 @@ there): wrap it in `object_mode(obj)`. Features are tested for, never version nu
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import Optional
 
@@ -154,6 +154,16 @@ def write_uv(mesh: bpy.types.Mesh, arrays: MeshArrays, uv: np.ndarray, name: str
         layer.data.foreach_set("uv", corners.ravel())
     mesh.uv_layers.active = mesh.uv_layers[name]
     mesh.update()
+
+
+def add_triangles(mesh: bpy.types.Mesh, triangles: np.ndarray) -> None:
+    """Faces (m, 3) of the vertices of a mesh that has none yet; `mesh.update(calc_edges=True)` is the caller's."""
+    mesh.loops.add(3 * len(triangles))
+    mesh.loops.foreach_set("vertex_index", np.ascontiguousarray(triangles, np.int32).ravel())
+    mesh.polygons.add(len(triangles))
+    mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * len(triangles), 3, dtype=np.int32))
+    with suppress(AttributeError, RuntimeError, TypeError):  # read-only from version 4 on, needed before
+        mesh.polygons.foreach_set("loop_total", np.full(len(triangles), 3, np.int32))
 
 
 def check_uv_space(mesh: bpy.types.Mesh, name: str = UV_MAP) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Seeing a layout: the heat map of its distortion."""
+"""Seeing a layout: the heat map of its distortion, the tile among its copies."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 from bpy.props import EnumProperty
 
-from .. import blender_mesh, heat, layouts
+from .. import blender_mesh, heat, layouts, tile_copies, tile_preview
 from .jobs import mesh_problem, report_failure
 
 
@@ -94,4 +94,19 @@ class MESH_OT_orbifold_hide_distortion(bpy.types.Operator):
         return {"FINISHED"}
 
 
-CLASSES = (MESH_OT_orbifold_show_distortion, MESH_OT_orbifold_hide_distortion)
+class OBJECT_OT_orbifold_tile_preview(LayoutOperator, bpy.types.Operator):
+    bl_idname = "object.orbifold_tile_preview"
+    bl_label = "Tile Preview"
+    bl_description = (
+        "Make, or bring up to date, an object beside this one with the layout's tile among its copies, in the same "
+        "material: 3 x 3 cells of the plane's lattice, the whole group on the sphere, three rings in the Poincaré disk"
+    )
+
+    def show(self, context: bpy.types.Context, obj: bpy.types.Object, arrays: blender_mesh.MeshArrays,
+             layout: layouts.Layout) -> str:
+        preview, count = tile_preview.make_preview(context, obj, arrays, layout)
+        most = ", as many as are shown at most" if count == tile_copies.MOST else ""
+        return f"{preview.name}: the tile {count} times{most}."
+
+
+CLASSES = (MESH_OT_orbifold_show_distortion, MESH_OT_orbifold_hide_distortion, OBJECT_OT_orbifold_tile_preview)

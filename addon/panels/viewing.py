@@ -25,6 +25,7 @@ class ShowPanel:
         if mesh_problem(context) is not None:
             return
         draw_heat(layout, context.active_object.data)
+        layout.operator("object.orbifold_tile_preview", icon="MOD_ARRAY")
 
 
 def draw_heat(layout: bpy.types.UILayout, mesh: bpy.types.Mesh) -> None:
