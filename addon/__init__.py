@@ -13,7 +13,7 @@ bl_info = {
 
 import bpy
 
-from . import handlers, operators, panels, preferences, previews, properties, surface, viewing
+from . import handlers, live, operators, panels, preferences, previews, properties, surface, viewing
 from .panels import menus
 
 CLASSES = (*preferences.CLASSES, *operators.CLASSES, *panels.CLASSES)
@@ -26,9 +26,11 @@ def register() -> None:
     menus.register()
     handlers.register()
     viewing.register()
+    live.register()
 
 
 def unregister() -> None:
+    live.unregister()
     viewing.unregister()
     handlers.unregister()
     menus.unregister()

@@ -20,6 +20,8 @@ UV_MAP = "Orbifold"
 SHAPE_KEY = "Orbifold Sphere"
 # Edges that we, not the user, made seams: they are taken back when the object is unwrapped anew.
 CUT_ATTRIBUTE = "orbifold_cut"
+# Of edges: 2 p + s for the path p = 1, 2, ... of the cut, s = 1 where the user has made it a seam; 0: not on the cut.
+PATH_ATTRIBUTE = "orbifold_path"
 MAX_UV_MAPS = 8
 
 
@@ -145,8 +147,7 @@ def write_uv(mesh: bpy.types.Mesh, arrays: MeshArrays, uv: np.ndarray, name: str
 
     The triangles of one face must agree at the corners that they share (faces.py sees to it).
     """
-    corners = np.zeros((arrays.n_loops, 2), np.float32)
-    corners[arrays.loops.ravel()] = uv.reshape(-1, 2)
+    corners = _at_loops(arrays, uv)
     layer = _uv_layer(mesh, name)
     if hasattr(layer, "uv"):
         layer.uv.foreach_set("vector", corners.ravel())
@@ -154,6 +155,26 @@ def write_uv(mesh: bpy.types.Mesh, arrays: MeshArrays, uv: np.ndarray, name: str
         layer.data.foreach_set("uv", corners.ravel())
     mesh.uv_layers.active = mesh.uv_layers[name]
     mesh.update()
+
+
+def _at_loops(arrays: MeshArrays, uv: np.ndarray) -> np.ndarray:
+    """(loops, 2) float32 of `uv` (m, 3, 2)."""
+    corners = np.zeros((arrays.n_loops, 2), np.float32)
+    corners[arrays.loops.ravel()] = uv.reshape(-1, 2)
+    return corners
+
+
+def write_uv_in_edit_mode(mesh: bpy.types.Mesh, arrays: MeshArrays, uv: np.ndarray, name: str = UV_MAP) -> None:
+    """As `write_uv`, to a UV map that is there, without leaving edit mode. `arrays` were read after the last edit."""
+    bm = bmesh.from_edit_mesh(mesh)
+    layer = bm.loops.layers.uv.get(name)
+    if layer is None:
+        raise BlenderMeshError(f"The UV map {name} is gone: use Orbifold Unwrap, which makes it anew")
+    corners = iter(_at_loops(arrays, uv).tolist())
+    for face in bm.faces:
+        for loop in face.loops:
+            loop[layer].uv = next(corners)
+    bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
 
 
 def add_triangles(mesh: bpy.types.Mesh, triangles: np.ndarray) -> None:
@@ -232,6 +253,9 @@ def mark_seams(mesh: bpy.types.Mesh, pairs: Optional[np.ndarray]) -> None:
         ours = np.empty(len(mesh.edges), bool)
         old.data.foreach_get("value", ours)
         seams &= ~ours
+    path = read_int_attribute(mesh, PATH_ATTRIBUTE, "EDGE")
+    if path is not None:  # the cut may have been changed in edit mode, where the other attribute is out of reach
+        seams &= (path == 0) | (path % 2 == 1)
     cut = np.zeros(len(mesh.edges), bool)
     if pairs is not None and len(pairs):
         found = edge_indices(mesh, pairs)
@@ -240,6 +264,14 @@ def mark_seams(mesh: bpy.types.Mesh, pairs: Optional[np.ndarray]) -> None:
     attribute = mesh.attributes.get(CUT_ATTRIBUTE) or mesh.attributes.new(CUT_ATTRIBUTE, "BOOLEAN", "EDGE")
     attribute.data.foreach_set("value", cut & ~seams)
     mesh.update()
+
+
+def read_our_seams(mesh: bpy.types.Mesh) -> np.ndarray:
+    """(edges,) bool: seams that `mark_seams` has made."""
+    ours, attribute = np.zeros(len(mesh.edges), bool), mesh.attributes.get(CUT_ATTRIBUTE)
+    if attribute is not None and attribute.domain == "EDGE" and attribute.data_type == "BOOLEAN":
+        attribute.data.foreach_get("value", ours)
+    return ours
 
 
 def split_edges(mesh: bpy.types.Mesh, pairs: np.ndarray) -> None:

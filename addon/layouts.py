@@ -13,6 +13,7 @@ import io
 from dataclasses import dataclass
 from typing import Optional
 
+import bmesh
 import bpy
 import numpy as np
 from bpy.props import StringProperty
@@ -137,15 +138,37 @@ def _unpacked(text: str) -> dict[str, np.ndarray]:
 
 # ---------------------------------------------------------------------------------------------------- the cut
 
-PATH_ATTRIBUTE = "orbifold_path"  # of edges: the number of the cut's path that an edge belongs to, from 1; 0: none
+PATH_ATTRIBUTE = blender_mesh.PATH_ATTRIBUTE
 
 
 def keep_cut(mesh: bpy.types.Mesh, seams: np.ndarray, numbers: np.ndarray) -> None:
-    """Write the paths (k,) of the cut's edges, pairs of vertices (k, 2). In object mode."""
+    """Write the paths (k,) of the cut's edges, pairs of vertices (k, 2), whose seams are marked or not. In object
+    mode."""
     found = blender_mesh.edge_indices(mesh, seams)
+    on_mesh = found >= 0
+    theirs = blender_mesh.read_seams(mesh) & ~blender_mesh.read_our_seams(mesh)
     paths = np.zeros(len(mesh.edges), np.int32)
-    paths[found[found >= 0]] = numbers[found >= 0] + 1
+    paths[found[on_mesh]] = 2 * (numbers[on_mesh] + 1) + theirs[found[on_mesh]]
     blender_mesh.write_int_attribute(mesh, PATH_ATTRIBUTE, paths, "EDGE")
+
+
+def keep_cut_in_edit_mode(mesh: bpy.types.Mesh, seams: np.ndarray, numbers: np.ndarray) -> None:
+    """Paths and seams of a new cut, where an unwrap has made the attribute."""
+    bm = bmesh.from_edit_mesh(mesh)
+    layer = bm.edges.layers.int.get(PATH_ATTRIBUTE)
+    if layer is None:
+        return
+    for edge in bm.edges:
+        if edge[layer]:
+            edge.seam = edge.seam and edge[layer] % 2 == 1
+            edge[layer] = 0
+    bm.verts.ensure_lookup_table()
+    for (a, b), number in zip(seams.tolist(), numbers.tolist()):
+        edge = bm.edges.get((bm.verts[a], bm.verts[b]))
+        if edge is not None:
+            edge[layer] = 2 * (number + 1) + edge.seam
+            edge.seam = True
+    bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
 
 
 def read_cut(mesh: bpy.types.Mesh) -> tuple[list, np.ndarray, np.ndarray]:
@@ -153,8 +176,13 @@ def read_cut(mesh: bpy.types.Mesh) -> tuple[list, np.ndarray, np.ndarray]:
     paths = blender_mesh.read_int_attribute(mesh, PATH_ATTRIBUTE, "EDGE")
     if paths is None:
         return [], np.zeros((0, 2), int), np.zeros(0, int)
-    found = np.flatnonzero(paths > 0)
-    return found.tolist(), blender_mesh.read_edges(mesh)[found].astype(int), paths[found].astype(int) - 1
+    found = np.flatnonzero(paths)
+    return found.tolist(), blender_mesh.read_edges(mesh)[found].astype(int), path_of(paths[found].astype(int))
+
+
+def path_of(value):
+    """The path, from 0, of an edge on the cut with this value of the attribute; also of an array of them."""
+    return value // 2 - 1
 
 
 def cone_places(item: OrbifoldLayout) -> dict[int, int]:

@@ -147,8 +147,8 @@ def _read_cut(mesh: bpy.types.Mesh) -> tuple[list, np.ndarray, np.ndarray]:
     layer = bm.edges.layers.int.get(layouts.PATH_ATTRIBUTE)
     if layer is None:
         return [], np.zeros((0, 2), int), np.zeros(0, int)
-    found = [(number, edge.verts[0].index, edge.verts[1].index, edge[layer] - 1)
-             for number, edge in enumerate(bm.edges) if edge[layer] > 0]
+    found = [(number, edge.verts[0].index, edge.verts[1].index, layouts.path_of(edge[layer]))
+             for number, edge in enumerate(bm.edges) if edge[layer]]
     rows = np.array(found, int).reshape(-1, 4)
     return rows[:, 0].tolist(), rows[:, 1:3], rows[:, 3]
 

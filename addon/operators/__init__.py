@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Operators, one idea a file."""
 
-from . import cones, fixed_boundary, sphere, stretch, suggesting, unwrap, viewing
+from . import cones, fixed_boundary, sliding, sphere, stretch, suggesting, unwrap, viewing
 
 CLASSES = (
     *cones.CLASSES,
@@ -11,4 +11,5 @@ CLASSES = (
     *fixed_boundary.CLASSES,
     *sphere.CLASSES,
     *viewing.CLASSES,
+    *sliding.CLASSES,
 )

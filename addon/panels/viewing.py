@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import bpy
 
-from .. import heat
+from .. import heat, live
 from ..operators.jobs import mesh_problem
+from .sidebar import wrapped
 
 
 class ShowPanel:
@@ -24,8 +25,26 @@ class ShowPanel:
         row.prop(settings, "show_cut", toggle=True, icon="EDGESEL")
         if mesh_problem(context) is not None:
             return
+        draw_live(layout, context)
         draw_heat(layout, context.active_object.data)
         layout.operator("object.orbifold_tile_preview", icon="MOD_ARRAY")
+
+
+def draw_live(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    mesh = context.active_object.data
+    column = layout.column(align=True)
+    column.prop(context.window_manager, "orbifold_live", toggle=True, icon="RECORD_ON")
+    column.operator("mesh.orbifold_slide_cone", icon="EMPTY_ARROWS").vertex = -1
+    done = live.progress(mesh)
+    if done is not None:
+        row = column.row(align=True)
+        row.label(text=f"Computing: {done:.0%}")
+        row.operator("mesh.orbifold_cancel_live", icon="CANCEL")
+    problem = live.problem(mesh)
+    if problem is not None:
+        scale = context.preferences.system.ui_scale or 1.0
+        for number, line in enumerate(wrapped(problem, max(16, int(context.region.width / (7.5 * scale)) - 4))):
+            column.label(text=line, icon="BLANK1" if number else "ERROR")
 
 
 def draw_heat(layout: bpy.types.UILayout, mesh: bpy.types.Mesh) -> None:
