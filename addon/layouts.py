@@ -61,6 +61,44 @@ class Layout:
     def curvature(self) -> int:
         return CURVATURE[self.geometry]
 
+    @property
+    def to_cells(self) -> Optional[np.ndarray]:
+        """(3, 2) from the plane's (x, y, 1) to the lattice's coordinates."""
+        if self.lattice is None:
+            return None
+        uv = self.uv.reshape(-1, 2)
+        cells, *_ = np.linalg.lstsq(
+            self.points.reshape(-1, 3), np.column_stack([uv, np.ones(len(uv))]) @ self.lattice, rcond=None
+        )
+        return cells
+
+
+@dataclass(frozen=True)
+class Painted:
+    """What pattern.py needs of a core.Result, of a layout that is read from a mesh: every corner is a copy."""
+
+    geometry: str
+    signature: str
+    generators: np.ndarray
+    embedding: np.ndarray  # (3 m, 3)
+    cut_triangles: np.ndarray  # (m, 3)
+    cones: np.ndarray  # (k,) a corner at each cone
+    report: dict
+
+
+def painted(layout: Layout, triangles: np.ndarray) -> tuple[Painted, FaceLayout]:
+    """Of the layout of a mesh with these triangles (m, 3), for `pattern.image`."""
+    corners = triangles.ravel()
+    usable = np.isfinite(layout.points).all((1, 2))
+    rows = np.flatnonzero(usable)
+    cones = np.array([np.flatnonzero(corners == cone)[0] for cone in layout.cones.tolist()], int)
+    tile = Painted(
+        *(layout.geometry, layout.signature, layout.generators, layout.points.reshape(-1, 3)),
+        3 * rows[:, None] + np.arange(3), cones[np.isfinite(layout.points.reshape(-1, 3)[cones]).all(1)],
+        {"orbifold": {"euler": layout.euler}},
+    )
+    return tile, FaceLayout(layout.chart_name, layout.uv[usable], layout.points[usable], np.zeros((0, 2), int), 0, 0)
+
 
 def keep(mesh: bpy.types.Mesh, arrays: blender_mesh.MeshArrays, result: Result, layout: FaceLayout,
          weights: str) -> None:

@@ -27,7 +27,7 @@ RADIUS, ACTIVE_RADIUS = 6.5, 8.5  # of a cone, in points of the interface
 RIM = 1.5
 LINE = 3.0  # width of a path
 HIDDEN = 0.22  # opacity of what lies behind something
-NEARER, CONES_NEARER = 0.996, 0.985  # the part of its distance at which a thing is drawn, lest it sink into the surface
+NEARER, CONES_NEARER = 0.004, 0.015  # by which part of its distance a thing is drawn nearer, lest the surface hide it
 TEXT_SIZE = 13
 CORNERS = 20  # of a drawn disk
 
@@ -195,11 +195,19 @@ def draw_places() -> None:
         for wanted, part, draw in ((settings.show_cut, NEARER, _draw_cut), (settings.show_cones, CONES_NEARER, _draw_cones)):
             if wanted:
                 with gpu.matrix.push_pop():
-                    gpu.matrix.load_matrix(Matrix.Scale(part, 4) @ seen_from)
+                    gpu.matrix.load_matrix(_nearer(context, part) @ seen_from)
                     for obj, drawn in shown:
                         draw(context, obj, drawn, opacity)
     gpu.state.depth_test_set("NONE")
     gpu.state.blend_set("NONE")
+
+
+def _nearer(context: bpy.types.Context, part: float) -> Matrix:
+    """To be applied in the viewer's coordinates: to the viewer by this part of the distance, the picture as it was."""
+    view = context.region_data
+    if view.window_matrix[3][3] == 0:  # in perspective
+        return Matrix.Scale(1 - part, 4)
+    return Matrix.Translation((0.0, 0.0, part * view.view_distance))
 
 
 def _draw_cut(context: bpy.types.Context, obj: bpy.types.Object, drawn: _Drawn, opacity: float) -> None:

@@ -39,7 +39,7 @@ def make_preview(context: bpy.types.Context, obj: bpy.types.Object, arrays: blen
     usable = np.isfinite(layout.points).all((1, 2))  # beyond the rim of the disk in single precision
     points = layout.points[usable].reshape(-1, 3)
     elements = tile_copies.copies_of(
-        layout.generators, layout.curvature, points, _distinct(corners), layout.euler, _to_cells(layout)
+        layout.generators, layout.curvature, points, _distinct(corners), layout.euler, layout.to_cells
     )
     tile = _tile_of(obj.data, arrays, layout, usable)
     if layout.curvature < 0 and len(tile.triangles) * len(elements) > TRIANGLES:
@@ -71,15 +71,6 @@ def _corner_vertices(mesh: bpy.types.Mesh, layout: layouts.Layout) -> np.ndarray
 def _distinct(points: np.ndarray) -> np.ndarray:
     points = points[np.isfinite(points).all(1)]
     return np.unique(np.round(points, 6), axis=0) if len(points) else points
-
-
-def _to_cells(layout: layouts.Layout) -> np.ndarray | None:
-    """(3, 2) from the plane's (x, y, 1) to the lattice's coordinates."""
-    if layout.lattice is None:
-        return None
-    plane, uv = layout.points.reshape(-1, 3), layout.uv.reshape(-1, 2)
-    cells, *_ = np.linalg.lstsq(plane, np.column_stack([uv, np.ones(len(uv))]) @ layout.lattice, rcond=None)
-    return cells
 
 
 def _drawn(points: np.ndarray, curvature: int) -> np.ndarray:

@@ -4,9 +4,18 @@
 from __future__ import annotations
 
 import bpy
-from bpy.props import BoolProperty, PointerProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, PointerProperty, StringProperty
 
-from . import overlay
+from . import overlay, procedural
+
+PATTERNS = (
+    ("RINGS", "Rings", "For every orbifold: rings about the cones, an image that is made for the layout"),
+    *((key, pattern.name, pattern.description) for key, pattern in procedural.PATTERNS.items()),
+)
+
+
+def _changed(_settings: "OrbifoldView", _context: bpy.types.Context) -> None:
+    overlay.redraw()
 
 
 class OrbifoldView(bpy.types.PropertyGroup):
@@ -17,15 +26,16 @@ class OrbifoldView(bpy.types.PropertyGroup):
         description="Draw the cones of all visible meshes in the 3D view, in the colours of the pattern and with their "
         "orders; in edit mode in the UV editor too",
         default=True,
-        update=lambda _settings, _context: overlay.redraw(),
+        update=_changed,
     )
     show_cut: BoolProperty(
         name="Cut",
         description="Draw the cut of the last unwrap. A path on the mesh is two sides of the tile that are glued: in "
         "the UV editor, in edit mode, both have the path's colour",
         default=True,
-        update=lambda _settings, _context: overlay.redraw(),
+        update=_changed,
     )
+    pattern: EnumProperty(name="Pattern", description="What Pattern Material shows", items=PATTERNS)
     colour_types: StringProperty(options={"HIDDEN"})  # of the 3D views before a heat map (heat.py)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Seeing a layout: the heat map of its distortion, the tile among its copies."""
+"""Seeing a layout: the heat map of its distortion, the tile among its copies, patterns."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 from bpy.props import EnumProperty
 
-from .. import blender_mesh, heat, layouts, tile_copies, tile_preview
+from .. import blender_mesh, heat, layouts, materials, procedural, tile_copies, tile_preview, viewing
 from .jobs import mesh_problem, report_failure
 
 
@@ -109,4 +109,36 @@ class OBJECT_OT_orbifold_tile_preview(LayoutOperator, bpy.types.Operator):
         return f"{preview.name}: the tile {count} times{most}."
 
 
-CLASSES = (MESH_OT_orbifold_show_distortion, MESH_OT_orbifold_hide_distortion, OBJECT_OT_orbifold_tile_preview)
+class OBJECT_OT_orbifold_pattern(LayoutOperator, bpy.types.Operator):
+    bl_idname = "object.orbifold_pattern"
+    bl_label = "Pattern Material"
+    bl_description = (
+        "Give the object a material whose pattern crosses the seams of its layout without a break, in its last slot. "
+        "Material or rendered shading shows it"
+    )
+
+    pattern: EnumProperty(name="Pattern", items=viewing.PATTERNS)
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        self.pattern = context.scene.orbifold_view.pattern
+        return self.execute(context)
+
+    def show(self, context: bpy.types.Context, obj: bpy.types.Object, arrays: blender_mesh.MeshArrays,
+             layout: layouts.Layout) -> str:
+        if self.pattern == "RINGS":
+            material = materials.make_material(obj, *layouts.painted(layout, arrays.triangles))
+        else:
+            problem = procedural.why_not(self.pattern, layout, layout.to_cells)
+            if problem is not None:
+                raise blender_mesh.BlenderMeshError(problem)
+            material = procedural.make_material(obj, self.pattern, layout.lattice)
+        materials.assign(obj, material)
+        return f"{material.name} is the material of {obj.name}."
+
+
+CLASSES = (
+    MESH_OT_orbifold_show_distortion,
+    MESH_OT_orbifold_hide_distortion,
+    OBJECT_OT_orbifold_tile_preview,
+    OBJECT_OT_orbifold_pattern,
+)

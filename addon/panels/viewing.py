@@ -28,12 +28,15 @@ class ShowPanel:
         draw_live(layout, context)
         draw_heat(layout, context.active_object.data)
         layout.operator("object.orbifold_tile_preview", icon="MOD_ARRAY")
+        row = layout.row(align=True)
+        row.prop(settings, "pattern", text="")
+        row.operator("object.orbifold_pattern", icon="MATERIAL")
 
 
 def draw_live(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     mesh = context.active_object.data
     column = layout.column(align=True)
-    column.prop(context.window_manager, "orbifold_live", toggle=True, icon="RECORD_ON")
+    column.prop(context.window_manager, "orbifold_live", toggle=True, icon="REC")
     column.operator("mesh.orbifold_slide_cone", icon="EMPTY_ARROWS").vertex = -1
     done = live.progress(mesh)
     if done is not None:
