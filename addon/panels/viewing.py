@@ -28,9 +28,9 @@ class ShowPanel:
         draw_live(layout, context)
         draw_heat(layout, context.active_object.data)
         layout.operator("object.orbifold_tile_preview", icon="MOD_ARRAY")
-        row = layout.row(align=True)
-        row.prop(settings, "pattern", text="")
-        row.operator("object.orbifold_pattern", icon="MATERIAL")
+        column = layout.column(align=True)
+        column.prop(settings, "pattern", text="")
+        column.operator("object.orbifold_pattern", icon="MATERIAL")
 
 
 def draw_live(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

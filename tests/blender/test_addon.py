@@ -8,7 +8,7 @@ import zipfile
 import pytest
 from conftest import checks_of, zip_path
 
-SCRIPTS = ("registration.py", "picking.py", "unwrapping.py", "orbifolds.py", "suggesting.py", "bad_input.py")
+SCRIPTS = ("registration.py", "picking.py", "unwrapping.py", "orbifolds.py", "suggesting.py", "seeing.py", "bad_input.py")
 
 
 @pytest.mark.parametrize("script, check", [(script, check) for script in SCRIPTS for check in checks_of(script)])
