@@ -170,10 +170,11 @@ def write_uv_in_edit_mode(mesh: bpy.types.Mesh, arrays: MeshArrays, uv: np.ndarr
     layer = bm.loops.layers.uv.get(name)
     if layer is None:
         raise BlenderMeshError(f"The UV map {name} is gone: use Orbifold Unwrap, which makes it anew")
-    corners = iter(_at_loops(arrays, uv).tolist())
+    corners = _at_loops(arrays, uv)
+    pairs = zip(corners[:, 0].tolist(), corners[:, 1].tolist())  # no lists of two, which the garbage collector visits
     for face in bm.faces:
-        for loop in face.loops:
-            loop[layer].uv = next(corners)
+        for loop, pair in zip(face.loops, pairs):
+            loop[layer].uv = pair
     bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
 
 

@@ -33,22 +33,22 @@ class Pattern:
 
 PATTERNS = {
     "CHECKER": Pattern(
-        "Checker", "Squares in two colours, about every corner of the lattice", ((8, 0, False), (0, 8, False)), True, 0.0
+        "Checker", "Squares in two colours, about every corner of the lattice", ((16, 0, False), (0, 16, False)), True, 0.0
     ),
     "STRIPES": Pattern(
-        "Stripes", "For 2222: stripes, which half a turn leaves as they are", ((12, 0, False),), False, 0.0
+        "Stripes", "For 2222: stripes, which half a turn leaves as they are", ((24, 0, False),), False, 0.0
     ),
     "TRIANGLES": Pattern(
         "Triangles", "For 333: triangles in two colours, which a third of a turn leaves as they are",
-        ((8, -8, True), (0, 16, True), (-8, -8, True)), True, 0.0,
+        ((16, -16, True), (0, 32, True), (-16, -16, True)), True, 0.0,
     ),
     "QUADS": Pattern(
         "Quads", "For 442: rounded quads, which a quarter of a turn leaves as they are",
-        ((8, 0, False), (0, 8, False)), False, -0.6,
+        ((16, 0, False), (0, 16, False)), False, -0.25,
     ),
     "HEXAGONS": Pattern(
         "Hexagons", "For 632 and 333: rounded hexagons, which a sixth of a turn leaves as they are",
-        ((8, -8, False), (0, 16, False), (-8, -8, False)), False, -0.4,
+        ((16, -16, False), (0, 32, False), (-16, -16, False)), False, 0.8,
     ),
 }
 

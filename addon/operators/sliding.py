@@ -25,7 +25,7 @@ def neighbours(mesh: bpy.types.Mesh, vertex: int) -> list[int]:
     border, where it would be of another kind."""
     bm = bmesh.from_edit_mesh(mesh)
     bm.verts.ensure_lookup_table()
-    taken = {cone.vertex for cone in cones.read_cones(mesh)}
+    taken = {item.vertex for item in mesh.orbifold.cones}
     here = bm.verts[vertex]
     edges = [edge for edge in here.link_edges if edge.is_boundary == here.is_boundary]
     found = [edge.other_vert(here) for edge in edges]
@@ -47,7 +47,9 @@ class MESH_OT_orbifold_slide_cone(ConeOperator, bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         mesh = context.active_object.data
-        there = cones.read_cones(mesh)
+        if not cones.mirror_is_valid(mesh):
+            properties.sync(mesh)
+        there = mesh.orbifold.cones
         active = min(mesh.orbifold.active_cone, len(there) - 1)
         if active < 0 or self.vertex not in neighbours(mesh, there[active].vertex):
             self.report({"ERROR"}, f"The cone cannot move to vertex {self.vertex}: choose a neighbour without a cone.")
@@ -130,7 +132,7 @@ def _view(context: bpy.types.Context) -> Optional[bpy.types.Area]:
 
 def _move(mesh: bpy.types.Mesh, vertex: int) -> None:
     """The active cone to a neighbour. Orders and signature stay, for nothing passes a cone."""
-    there = cones.read_cones(mesh)
+    there = [cones.Cone(item.vertex, item.order) for item in mesh.orbifold.cones]
     active = min(mesh.orbifold.active_cone, len(there) - 1)
     there[active] = cones.Cone(vertex, there[active].order)
     live.expect(mesh)
