@@ -9,6 +9,7 @@
 #   ./build.sh package                    build/orbifold_uv-VERSION.zip, to install in Blender
 #   ./build.sh bench [ROUNDS [MESHES]]    seconds of each stage on several meshes
 #   ./build.sh docs [--blender PATH]      the pictures of the documentation
+#   ./build.sh docs cones                 the tables of docs/cones.md, measured (an hour)
 #   ./build.sh deps                       install what all of these need, and nothing else
 #   ./build.sh clean                      remove what was built
 #
@@ -151,6 +152,12 @@ package() {
 bench() { native; make_native bench; "$build/native/bench" "${arguments[@]}"; }
 
 docs() {
+    if [ "${arguments[*]}" = cones ]; then
+        want_python numpy
+        native
+        PYTHONDONTWRITEBYTECODE=1 "$(find_python numpy)" "$root/docs/make_cones.py"
+        return
+    fi
     [ -e "$root/docs/make_pictures.sh" ] || die "there is no docs/make_pictures.sh"
     want_docs
     native

@@ -87,15 +87,15 @@ class MESH_UL_orbifold_suggestions(bpy.types.UIList):
 
     def draw_item(self, context, layout, _data, item, _icon, _active_data, _active_property, index=0) -> None:
         placed = suggestions.placed_row(context.active_object.data) == index
-        icons = ("RADIOBUT_ON" if placed else "RADIOBUT_OFF", "NONE", "NONE")
+        icons = ("CHECKMARK" if placed else "NONE", "NONE", "NONE")
         for cell, text, icon in zip(table_columns(layout), table_texts(item), icons):
             cell.operator("mesh.orbifold_place_suggestion", text=text, icon=icon, emboss=False).index = index
 
 
 def table_columns(layout: bpy.types.UILayout) -> tuple[bpy.types.UILayout, ...]:
     """Places for signature, spread and number of cones in a row of the table."""
-    row = layout.split(factor=0.48, align=True)
-    signature, others = row.row(), row.split(factor=0.64, align=True)
+    row = layout.split(factor=0.45, align=True)
+    signature, others = row.row(), row.split(factor=0.56, align=True)
     return signature, others.row(), others.row()
 
 

@@ -103,8 +103,6 @@ static void dilate(orb_embedding *embedding, double shift) {
 
 orb_status dilation_choose(orb_embedding *embedding, orb_error *error) {
     const orb_mesh *mesh = embedding->mesh;
-    if (!dilation_is_free(embedding->surface->signature))
-        return ORB_OK;
     const size_t room = (size_t)mesh->n_triangles + 1;
     orb_shape shape = {0};
     double *lengths = malloc(((size_t)mesh->n_edges + 1) * sizeof *lengths), *weight = malloc(room * sizeof *weight);

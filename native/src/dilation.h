@@ -15,8 +15,8 @@ double dilation_log_cosh(double x);
 /* s for which the weighted variance of base - 2 log cosh(height + s) is least; arrays [n], weights >= 0. */
 double dilation_of_least_spread(int32_t n, const double *weight, const double *base, const double *height);
 
-/* Moves embedding->position by the dilation of least spread of log area, where one is free and all that is placed allows it.
- * The copies have to be placed anew. Error: ORB_OUT_OF_MEMORY. */
+/* Moves embedding->position by the dilation of least spread of log area; one must be free. The copies have to be placed
+ * anew. Error: ORB_OUT_OF_MEMORY. */
 orb_status dilation_choose(orb_embedding *embedding, orb_error *error);
 
 #endif

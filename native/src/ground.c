@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "picks.h"
+#include "triangle.h"
 
 /* A quarter of the given weights, as the form is a quarter of the variance of log area. */
 static orb_status weigh(orb_ground *ground, int32_t n_given, const double *keep_away, orb_error *error) {
@@ -37,8 +37,6 @@ orb_status ground_create(const orb_mesh *mesh, int32_t n_given, const double *ke
         return error_memory(error);
     orb_status status = boundary_list(mesh, &ground->boundary, error);
     if (status == ORB_OK)
-        status = picks_check(mesh, n_fixed, fixed, error);
-    if (status == ORB_OK)
         status = weigh(ground, n_given, keep_away, error);
     if (status != ORB_OK)
         return status;
@@ -46,9 +44,10 @@ orb_status ground_create(const orb_mesh *mesh, int32_t n_given, const double *ke
         ground->fixed[fixed[k]] = true;
         ground->penalty[fixed[k]] = 0;
     }
-    for (int32_t t = 0; t < mesh->n_triangles; t++)
-        ground->size += mesh_triangle_area(mesh, t);
-    ground->size = sqrt(ground->size);
+    for (int32_t t = 0; t < mesh->n_triangles; t++) { /* by square roots, which are of the size of the lengths */
+        const triangle_shape shape = triangle_measure(mesh, t);
+        ground->size = hypot(ground->size, sqrt(0.5 * shape.double_area) / shape.scale);
+    }
     return ORB_OK;
 }
 

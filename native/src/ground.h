@@ -27,7 +27,8 @@ static inline int32_t ground_kind_loop(int32_t kind) { return kind / 2 - 1; }
 static inline bool ground_kind_is_pair(int32_t kind) { return kind % 2 == 1; }
 
 /* keep_away [n_given] (may be NULL) is that of orb_suggest_request, for the first vertices; later ones, of filled holes, are
- * never cones. Errors: ORB_BAD_WEIGHT, ORB_BAD_CONE, ORB_OUT_OF_MEMORY. */
+ * never cones. `fixed` has been checked. Errors:
+ * ORB_BAD_WEIGHT, ORB_OUT_OF_MEMORY. */
 orb_status ground_create(const orb_mesh *mesh, int32_t n_given, const double *keep_away, int32_t n_fixed,
                          const int32_t *fixed, orb_ground **ground, orb_error *error);
 void ground_free(orb_ground *ground);

@@ -251,13 +251,29 @@ static void choose_modulus(orb_workshop *work) {
     modulus_report(work->embedding);
 }
 
+/* How far the positions are from a minimum of the energy. */
+static orb_status measure_gradient(orb_workshop *work, double *relative, orb_error *error) {
+    const orb_embedding *embedding = work->embedding;
+    const size_t n = (size_t)embedding->mesh->n_vertices + 1;
+    double complex *turn = malloc(((size_t)embedding->copies->n_copies + 1) * sizeof *turn);
+    double complex *gradient = malloc(n * sizeof *gradient);
+    double *scale = malloc(n * sizeof *scale);
+    const bool fine = turn && gradient && scale;
+    if (fine) {
+        problem_place(work->problem, embedding->position, embedding->placed, turn);
+        problem_energy(work->problem, embedding->placed, turn, embedding->position, gradient, scale, relative);
+    }
+    free(turn);
+    free(gradient);
+    free(scale);
+    return fine ? ORB_OK : error_memory(error);
+}
+
 /* Where a dilation is free, conformal energy does not feel it, and the discrete one only by its error: so conformal weights
  * leave it to the spread of area. If that flips a triangle, the minimum stays as it is. */
-static orb_status choose_dilation(orb_workshop *work, orb_error *error) {
+static orb_status choose_dilation(orb_workshop *work, double *relative_gradient, orb_error *error) {
     orb_embedding *embedding = work->embedding;
     const size_t bytes = ((size_t)embedding->mesh->n_vertices + 1) * sizeof *embedding->position;
-    if (!dilation_is_free(embedding->surface->signature))
-        return ORB_OK;
     orb_point *before = malloc(bytes);
     bool *flipped = malloc((size_t)embedding->mesh->n_triangles + 1);
     orb_status status = before && flipped ? ORB_OK : error_memory(error);
@@ -267,7 +283,10 @@ static orb_status choose_dilation(orb_workshop *work, orb_error *error) {
     }
     if (status == ORB_OK)
         status = place_copies(work, error);
-    if (status == ORB_OK && certificate_find_flipped(embedding, flipped) > 0) {
+    work->dilated = status == ORB_OK && certificate_find_flipped(embedding, flipped) == 0;
+    if (work->dilated) {
+        status = measure_gradient(work, relative_gradient, error);
+    } else if (status == ORB_OK) {
         memcpy(embedding->position, before, bytes - sizeof *before);
         status = place_copies(work, error);
     }
@@ -276,11 +295,11 @@ static orb_status choose_dilation(orb_workshop *work, orb_error *error) {
     return status;
 }
 
-/* The view shows weights of the mesh's edges only, and symmetric ones. */
+/* The view shows weights of the mesh's edges only, symmetric ones, and where the positions are their minimum. */
 static void leave_weights(orb_workshop *work) {
     if (work->intrinsic)
         intrinsic_finish(work->intrinsic, work->embedding);
-    if (work->request->weights == ORB_WEIGHTS_MEAN_VALUE_EXACT) {
+    if (work->request->weights == ORB_WEIGHTS_MEAN_VALUE_EXACT || work->dilated) {
         free(work->embedding->weights);
         work->embedding->weights = NULL;
     }
@@ -299,8 +318,9 @@ orb_status solve_minimise(orb_workshop *work, orb_error *error) {
     choose_modulus(work);
     if (report->n_moduli > 0)
         status = place_copies(work, error);
-    if (status == ORB_OK && work->request->weights == ORB_WEIGHTS_CONFORMAL)
-        status = choose_dilation(work, error);
+    if (status == ORB_OK && work->request->weights == ORB_WEIGHTS_CONFORMAL &&
+        dilation_is_free(embedding->surface->signature))
+        status = choose_dilation(work, &minimum.relative_gradient, error);
     if (status != ORB_OK)
         return status;
     report->energy = problem_energy(work->problem, embedding->placed, NULL, NULL, NULL, NULL, NULL);

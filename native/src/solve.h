@@ -17,6 +17,7 @@ typedef struct orb_workshop {
     orb_intrinsic *intrinsic; /* for weights on other edges than the mesh's */
     orb_system *system;
     int32_t *order; /* [system->n_free] of the system's blocks */
+    bool dilated;   /* away from the minimum (dilation.h) */
     orb_monitor monitor;
 } orb_workshop;
 

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "distortion.h"
+#include "picks.h"
 #include "plan.h"
 #include "surface.h"
 #include "topology.h"
@@ -451,6 +452,8 @@ orb_status orb_suggest_cones(const orb_mesh_arrays *mesh, const orb_suggest_requ
         status = mesh_create(mesh, &study.input, error);
     if (status == ORB_OK)
         status = mesh_require_connected(study.input, error);
+    if (status == ORB_OK)
+        status = picks_check(study.input, request->n_fixed, request->fixed, error);
     if (status == ORB_OK)
         status = list_signatures(&study, error);
     if (status == ORB_OK)

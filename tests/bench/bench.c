@@ -3,7 +3,10 @@
  * The floor is one CHOLMOD analysis, factorisation and solution of the bare complex Laplacian of the same mesh,
  * measured in the same run, before each embedding; of several rounds the fastest counts. Machines differ, ratios hardly.
  *
- *     bench [ROUNDS]         ../shared/meshes where present, else meshes made here */
+ * The last table is that of cone suggestions, for all usual signatures at once: whole, and without the embeddings of tiles
+ * that are not conformal.
+ *
+ *     bench [ROUNDS [MESHES]]         ../shared/meshes where present, else meshes made here */
 #include <complex.h>
 #include <stdlib.h>
 
@@ -11,6 +14,7 @@
 #include "mesh.h"
 #include "meshes.h"
 #include "monitor.h"
+#include "orbifold_cones.h"
 
 enum { MOST_CONES = 10 };
 
@@ -147,6 +151,47 @@ static void run_surface(const char *name, const char *signature, int32_t k, cons
     sample_free(&mesh);
 }
 
+typedef struct watch {
+    double start, search; /* when it began, and seconds until the first embedding */
+} watch;
+
+static bool look(const char *stage, double fraction, void *user) {
+    watch *w = user;
+    (void)fraction;
+    if (w->search < 0 && strcmp(stage, "embedding") == 0)
+        w->search = monitor_clock() - w->start;
+    return true;
+}
+
+/* Seconds of the usual suggestions, and their ratio to the floor. */
+static void run_suggestions(const char *name, const sample_mesh *mesh, int rounds) {
+    orb_error error;
+    orb_mesh_arrays arrays = sample_arrays(mesh);
+    orb_mesh *topology = NULL;
+    if (mesh_create(&arrays, &topology, &error) != ORB_OK)
+        give_up(name, &error);
+    double least = 1e300, total = 1e300, search = 1e300;
+    orb_suggestions *suggestions = NULL;
+    for (int round = 0; round < rounds; round++) {
+        orb_suggestions_free(suggestions);
+        least = fmin(least, floor_seconds(topology));
+        watch w = {monitor_clock(), -1};
+        orb_suggest_request request = {.progress = look, .user = &w};
+        if (orb_suggest_cones(&arrays, &request, &suggestions, &error) != ORB_OK)
+            give_up(name, &error);
+        const double seconds = monitor_clock() - w.start;
+        total = fmin(total, seconds);
+        search = fmin(search, w.search < 0 ? seconds : w.search);
+    }
+    mesh_free(topology);
+    const orb_suggestion best = orb_suggestions_view(suggestions, 0);
+    printf("%-12s %8d %6d %-10s %7.3f %8.3f %8.3f %7.3f %6.1f\n", name, (int)mesh->n_vertices,
+           (int)orb_suggestions_count(suggestions), best.signature, best.predicted, search, total, least,
+           total / least);
+    fflush(stdout);
+    orb_suggestions_free(suggestions);
+}
+
 /* Refined until it has at least `least` vertices. */
 static void refine_to(sample_mesh *mesh, int32_t least) {
     while (mesh->n_vertices < least) {
@@ -192,5 +237,19 @@ int main(int argc, char **argv) {
                     {"three_holes.off", "ooo", 0, {0}}};
     for (size_t i = 0; i < sizeof surfaces / sizeof *surfaces; i++)
         run_surface(surfaces[i].name, surfaces[i].signature, surfaces[i].k, surfaces[i].cones, rounds);
+    printf("\n%-12s %8s %6s %-10s %7s %8s %8s %7s %6s\n", "mesh", "vertices", "signs.", "best", "spread", "search",
+           "total", "floor", "ratio");
+    for (int i = 0; i < largest && i < 4; i++) {
+        sample_mesh mesh;
+        if (!sample_read(&mesh, meshes[i].name))
+            mesh = sample_icosphere(meshes[i].level);
+        refine_to(&mesh, meshes[i].least);
+        run_suggestions(meshes[i].name, &mesh, mesh.n_vertices > 100000 || rounds < 1 ? 1 : rounds);
+        sample_free(&mesh);
+    }
+    sample_mesh disk;
+    if (sample_read(&disk, "camelhead.off"))
+        run_suggestions("camelhead.off", &disk, rounds > 0 ? rounds : 1);
+    sample_free(&disk);
     return 0;
 }

@@ -11,7 +11,7 @@ import subprocess
 import pytest
 from conftest import INSIDE, Home
 
-LIMIT = 300
+LIMIT = 600
 
 
 @pytest.fixture(scope="module")

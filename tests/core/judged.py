@@ -52,6 +52,23 @@ def sides_and_angles(result):
     return side, judge["corner_angles"](corners, curvature)
 
 
+def singular_spread(result):
+    """Twice the area-weighted standard deviation of the logarithms of all triangles' singular values; for a conformal
+    map that is the spread of log area. Triangles are compared by their sides, as if the tile's were flat."""
+    shared_file("tools", "check_layout.py")
+    corners = result.vertices[result.triangles]
+    there = np.linalg.norm(np.roll(corners, -1, 1) - corners, axis=2)
+    here, _ = sides_and_angles(result)
+    grams = []
+    for side in (there, np.asarray(here, float)):
+        a, b, c = (side.T / side.mean()) ** 2  # of corners 0 1, 1 2, 2 0
+        grams.append(np.moveaxis(np.array([[a, (a + c - b) / 2], [(a + c - b) / 2, c]]), 2, 0))
+    logs = np.log(np.linalg.eigvals(np.linalg.solve(*grams)).real) / 2
+    area = np.sqrt(np.linalg.det(grams[0])) / 2
+    mean = np.average(logs.mean(1), weights=area)
+    return 2 * np.sqrt(np.average(((logs - mean) ** 2).mean(1), weights=area))
+
+
 def harmonic_residual(result):
     """The greatest |sum w log| / sum w |log| of free vertices, by unfolding each ring, whichever way the triangles
     run; along the mirror only for vertices on one."""

@@ -171,7 +171,11 @@ TEST(certified_and_better_on_many_surfaces) {
         CHECK(conformal.report.quasi_conformal_median < plain.report.quasi_conformal_median);
         CHECK(conformal.report.clamped_weights * 4 < plain.report.clamped_weights);
         CHECK(conformal.n_copies == plain.n_copies && delaunay.n_copies == plain.n_copies);
-        CHECK(conformal.report.relative_gradient < 1e-9 && delaunay.report.relative_gradient < 1e-9);
+        CHECK(delaunay.report.relative_gradient < 1e-9);
+        if (cases[i].k == 2) /* the free dilation is chosen for the areas: away from the minimum, no weights to show */
+            CHECK(!conformal.has_weights);
+        else
+            CHECK(conformal.report.relative_gradient < 1e-9);
         free(plain.length), free(conformal.length), free(delaunay.length);
         sample_free(&mesh);
     }

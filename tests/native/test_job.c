@@ -1,11 +1,16 @@
-/* job.c on its own: it is compiled into this file with a stand-in for orb_embed that stops where a test wants it to,
+/* job.c on its own: it is compiled into this file with stand-ins for orb_embed and orb_suggest_cones that stop where a
+ * test wants them to,
  * so that every order of events between the two threads can be had. The real pipeline as a job is tested in
  * tests/core/test_job.py. SPDX-License-Identifier: GPL-3.0-or-later
  *
  * Run it under ThreadSanitizer as well: gcc -fsanitize=thread test_job.c error.c. */
 #define orb_embed fake_embed
 #define orb_embedding_free fake_embedding_free
+#define orb_suggest_cones fake_suggest_cones
+#define orb_suggestions_free fake_suggestions_free
 #define orb_job_start tested_job_start
+#define orb_job_start_suggest tested_job_start_suggest
+#define orb_job_finish_suggest tested_job_finish_suggest
 #define orb_job_poll tested_job_poll
 #define orb_job_cancel tested_job_cancel
 #define orb_job_finish tested_job_finish
@@ -50,7 +55,7 @@ static struct {
     sem_t over; /* posted when the stand-in is about to return */
     orb_status given;
 } fake;
-static atomic_int freed; /* embeddings; apart from the above, since a detached thread may free one late */
+static atomic_int freed; /* embeddings and suggestions; apart from the above: a detached thread may free one late */
 
 static void fake_reset(void) {
     memset(&fake, 0, sizeof fake);
@@ -110,6 +115,49 @@ void fake_embedding_free(orb_embedding *embedding) {
     if (embedding)
         freed++;
     free(embedding);
+}
+
+struct orb_suggestions {
+    double first_vertex, last_away, plane;
+    int32_t last_fixed, n_signatures;
+    char signatures[2][16];
+};
+
+orb_status fake_suggest_cones(const orb_mesh_arrays *mesh, const orb_suggest_request *request,
+                              orb_suggestions **suggestions, orb_error *error) {
+    bool go_on = request->progress(fake.stage, fake.fraction, request->user);
+    sem_post(&fake.inside);
+    if (fake.waits)
+        while (sem_wait(&fake.leave))
+            ;
+    go_on = request->progress(fake.stage, fake.second_fraction, request->user) && go_on;
+    orb_suggestions *made = NULL;
+    if (fake.fails) {
+        fake.given = error_set(error, ORB_CONE_COUNT, "too few");
+    } else if (!go_on) {
+        fake.given = error_set(error, ORB_CANCELLED, "cancelled");
+    } else if (!(made = calloc(1, sizeof *made))) {
+        fake.given = error_memory(error);
+    } else {
+        made->first_vertex = mesh->vertices[0];
+        made->last_away = request->keep_away ? request->keep_away[mesh->n_vertices - 1] : -1;
+        made->last_fixed = request->n_fixed > 0 ? request->fixed[request->n_fixed - 1] : -1;
+        made->plane = request->plane[3];
+        made->n_signatures = request->n_signatures;
+        for (int32_t k = 0; k < request->n_signatures && k < 2; k++)
+            memcpy(made->signatures[k], request->signatures[k], strlen(request->signatures[k]) + 1);
+        fake.given = ORB_OK;
+    }
+    *suggestions = made;
+    orb_status given = fake.given;
+    sem_post(&fake.over);
+    return given;
+}
+
+void fake_suggestions_free(orb_suggestions *suggestions) {
+    if (suggestions)
+        freed++;
+    free(suggestions);
 }
 
 static const double vertices[9] = {7, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -316,4 +364,102 @@ TEST(job_without_arguments_is_refused) {
     CHECK(orb_job_poll(NULL, NULL, NULL));
     orb_job_cancel(NULL);
     CHECK(orb_job_finish(NULL, NULL, &error) == ORB_BAD_ARGUMENT);
+}
+
+/* --- suggestions ------------------------------------------------------------------------------------------------- */
+
+static orb_status start_suggest(char (*text)[8], const char **signatures, int32_t *fixed, double *away, orb_job **job,
+                                orb_error *error) {
+    strcpy(text[0], "442"), strcpy(text[1], "22(12)");
+    signatures[0] = text[0], signatures[1] = text[1];
+    fixed[0] = 1, fixed[1] = 2;
+    away[0] = 0, away[1] = 1, away[2] = 5;
+    orb_mesh_arrays mesh = {3, vertices, 1, triangles};
+    orb_suggest_request request = {.n_signatures = 2,
+                                   .signatures = signatures,
+                                   .n_fixed = 2,
+                                   .fixed = fixed,
+                                   .keep_away = away,
+                                   .plane = {0, 0, 1, 4}};
+    return orb_job_start_suggest(&mesh, &request, job, error);
+}
+
+TEST(job_copies_what_suggestions_need) {
+    fake_reset();
+    fake.waits = true;
+    char text[2][8];
+    const char *signatures[2];
+    int32_t fixed[2];
+    double away[3];
+    orb_job *job = NULL;
+    orb_error error = {0};
+    orb_suggestions *made = NULL;
+    REQUIRE(start_suggest(text, signatures, fixed, away, &job, &error) == ORB_OK);
+    memset(text, 0, sizeof text), memset(signatures, 0, sizeof signatures);
+    memset(fixed, 0, sizeof fixed), memset(away, 0, sizeof away);
+    sem_post(&fake.leave);
+    REQUIRE(orb_job_finish_suggest(job, &made, &error) == ORB_OK && made);
+    CHECK(made->first_vertex == 7 && made->last_away == 5 && made->last_fixed == 2 && made->plane == 4);
+    CHECK(made->n_signatures == 2 && !strcmp(made->signatures[0], "442") && !strcmp(made->signatures[1], "22(12)"));
+    fake_suggestions_free(made);
+}
+
+TEST(job_of_suggestions_is_cancelled_and_cleaned_up) {
+    char text[2][8];
+    const char *signatures[2];
+    int32_t fixed[2];
+    double away[3];
+    orb_job *job = NULL;
+    orb_error error = {0};
+    orb_suggestions *made = NULL;
+    fake_reset();
+    fake.waits = true; /* within a long search */
+    REQUIRE(start_suggest(text, signatures, fixed, away, &job, &error) == ORB_OK);
+    sem_wait(&fake.inside);
+    orb_job_cancel(job);
+    double before = seconds();
+    CHECK(orb_job_finish_suggest(job, &made, &error) == ORB_CANCELLED && !made && seconds() - before < 0.1);
+    sem_post(&fake.leave);
+    sem_wait(&fake.over);
+    CHECK(fake.given == ORB_CANCELLED);
+    fake_reset(); /* after it was done, and when nobody takes what there is */
+    for (int cancels = 1; cancels >= 0; cancels--) {
+        int freed_before = freed;
+        REQUIRE(start_suggest(text, signatures, fixed, away, &job, &error) == ORB_OK);
+        while (!orb_job_poll(job, NULL, NULL))
+            ;
+        if (cancels)
+            orb_job_cancel(job);
+        CHECK(orb_job_finish_suggest(job, NULL, &error) == (cancels ? ORB_CANCELLED : ORB_OK));
+        CHECK(freed == freed_before + 1);
+    }
+    fake_reset();
+    fake.fails = true;
+    REQUIRE(start_suggest(text, signatures, fixed, away, &job, &error) == ORB_OK);
+    CHECK(orb_job_finish_suggest(job, &made, &error) == ORB_CONE_COUNT && !made && !strcmp(error.message, "too few"));
+}
+
+TEST(job_of_suggestions_survives_failed_allocations) {
+    fake_reset();
+    int failures = 0;
+    for (int allowed = 0; allowed < 100; allowed++) {
+        char text[2][8];
+        const char *signatures[2];
+        int32_t fixed[2];
+        double away[3];
+        orb_job *job = NULL;
+        orb_error error = {0};
+        allocations_left = allowed;
+        orb_status status = start_suggest(text, signatures, fixed, away, &job, &error);
+        allocations_left = -1;
+        if (status == ORB_OK) {
+            orb_suggestions *made = NULL;
+            CHECK(orb_job_finish_suggest(job, &made, &error) == ORB_OK && made);
+            fake_suggestions_free(made);
+            break;
+        }
+        CHECK(status == ORB_OUT_OF_MEMORY && error.status == ORB_OUT_OF_MEMORY && job == NULL);
+        failures++;
+    }
+    CHECK(failures == 7); /* the job, two arrays of the mesh, fixed, keep_away, the list of signatures, their texts */
 }

@@ -2,10 +2,12 @@
  *
  * Linked with --wrap=malloc and so on (native/Makefile), so that CHOLMOD's allocations count too. A run must end with
  * ORB_OUT_OF_MEMORY, or with success where the memory was dispensable; the sanitizers see to it that nothing leaks. */
+#include <math.h>
 #include <stdlib.h>
 
 #include "check.h"
 #include "failing.h"
+#include "orbifold_cones.h"
 #include "surfaces.h"
 
 /* Embeds, reads the UVs and, on the sphere, the whole sphere. */
@@ -26,14 +28,40 @@ static orb_status use_everything(const sample_mesh *mesh, const orb_request *req
     return status;
 }
 
-static void fail_each_of(sample_mesh mesh, orb_request request) {
-    double *room = calloc(6 * (size_t)mesh.n_triangles + 3 * (size_t)mesh.n_vertices, sizeof *room);
-    CHECK(use_everything(&mesh, &request, room) == ORB_OK);
+static orb_status embeds(const sample_mesh *mesh, const void *request, double *room) {
+    return use_everything(mesh, request, room);
+}
+
+/* Suggests cones, and predicts what the first ones do. */
+static orb_status suggests(const sample_mesh *mesh, const void *request, double *room) {
+    orb_mesh_arrays arrays = sample_arrays(mesh);
+    orb_suggestions *suggestions = NULL;
+    orb_error error;
+    orb_status status = orb_suggest_cones(&arrays, request, &suggestions, &error);
+    CHECK((status == ORB_OK) == (suggestions != NULL));
+    if (status == ORB_OK) {
+        const orb_suggestion made = orb_suggestions_view(suggestions, 0);
+        orb_request predicted = orb_request_default();
+        predicted.signature = made.signature;
+        predicted.n_cones = made.n_cones;
+        predicted.cones = made.cones;
+        predicted.holes = ((const orb_suggest_request *)request)->holes;
+        status = orb_predict(&arrays, &predicted, room, room + 1, &error);
+    }
+    orb_suggestions_free(suggestions);
+    return status;
+}
+
+/* Of a long run every `step`-th allocation only. */
+static void fail_each_in(orb_status (*run)(const sample_mesh *, const void *, double *), sample_mesh mesh,
+                         const void *request, long step) {
+    double *room = calloc(6 * (size_t)mesh.n_triangles + 3 * (size_t)mesh.n_vertices + 1, sizeof *room);
+    CHECK(run(&mesh, request, room) == ORB_OK);
     long survived = 0, reported = 0;
-    for (long n = 0;; n++) {
+    for (long n = 0;; n += step) {
         allocations = 0;
         failing = n;
-        orb_status status = use_everything(&mesh, &request, room);
+        orb_status status = run(&mesh, request, room);
         failing = -1;
         if (allocations <= n)
             break; /* the run ended before its n-th allocation */
@@ -43,11 +71,13 @@ static void fail_each_of(sample_mesh mesh, orb_request request) {
         if (check_failures)
             break;
     }
-    CHECK(reported > 50);
+    CHECK(reported * step > 50);
     CHECK(survived * 4 < reported);
     free(room);
     sample_free(&mesh);
 }
+
+static void fail_each_of(sample_mesh mesh, orb_request request) { fail_each_in(embeds, mesh, &request, 1); }
 
 static orb_request asking(const char *signature, int32_t k, const int32_t *cones) {
     orb_request request = orb_request_default();
@@ -132,4 +162,53 @@ TEST(out_of_memory_with_delaunay_weights) {
 }
 TEST(out_of_memory_with_exact_mean_values) {
     fail_each_with(ORB_WEIGHTS_MEAN_VALUE_EXACT, sample_icosphere(1), "442", 3, (int32_t[]){0, 14, 30});
+}
+
+/* --- suggested cones --------------------------------------------------------------------------------------------- */
+
+static void fail_each_suggesting(sample_mesh mesh, int32_t n, const char *const *signatures,
+                                 orb_suggest_request request, long step) {
+    request.n_signatures = n;
+    request.signatures = signatures;
+    fail_each_in(suggests, mesh, &request, step);
+}
+
+static sample_mesh small_sphere(void) {
+    sample_mesh coarse = sample_octahedron(), fine = sample_refined(&coarse, 2);
+    sample_free(&coarse);
+    return fine;
+}
+
+TEST(out_of_memory_while_suggesting_on_a_sphere) {
+    const char *const signatures[] = {"432", "33"};
+    fail_each_suggesting(small_sphere(), 2, signatures, (orb_suggest_request){0}, 1);
+    fail_each_suggesting(rough(small_sphere(), false), 2, signatures, (orb_suggest_request){0}, 1);
+}
+TEST(out_of_memory_while_suggesting_cones_that_are_measured) {
+    const char *const signatures[] = {"22222"};
+    fail_each_suggesting(rough(small_sphere(), false), 1, signatures, (orb_suggest_request){0}, 1);
+}
+TEST(out_of_memory_while_suggesting_with_wishes) {
+    const char *const signatures[] = {"2222"};
+    const int32_t fixed[] = {4};
+    double away[18] = {[3] = INFINITY, [7] = 0.5};
+    orb_suggest_request request = {
+        .n_fixed = 1, .fixed = fixed, .keep_away = away, .symmetry = ORB_SYMMETRY_PLANE, .plane = {0, 1, 0, 0}};
+    fail_each_suggesting(small_sphere(), 1, signatures, request, 1);
+}
+TEST(out_of_memory_while_suggesting_on_disks) {
+    const char *const signatures[] = {"*442", "4*2"};
+    fail_each_suggesting(sample_rectangle(1, 1.3, 3, 3), 2, signatures, (orb_suggest_request){0}, 1);
+}
+TEST(out_of_memory_while_suggesting_with_holes) {
+    const char *const signatures[] = {"442"};
+    for (orb_holes holes = ORB_HOLES_FILL; holes <= ORB_HOLES_MIRROR; holes++) {
+        sample_mesh open = small_sphere();
+        open.n_triangles -= 1;
+        fail_each_suggesting(open, 1, signatures, (orb_suggest_request){.holes = holes}, 1);
+    }
+}
+TEST(out_of_memory_while_suggesting_what_is_usual) { /* one allocation in 23 */
+    fail_each_suggesting(rough(small_sphere(), false), 0, NULL, (orb_suggest_request){0}, 23);
+    fail_each_suggesting(sample_fan(9), 0, NULL, (orb_suggest_request){0}, 23);
 }

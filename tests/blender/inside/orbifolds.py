@@ -50,7 +50,7 @@ CASES = [
 
 
 def prepare(make, signature, quads=False):
-    """An object with cones far from one another and the border, and the signature; its arrays and the result of core."""
+    """An object with cones far from one another and the border; its arrays and the result of core."""
     obj = make(quads)
     arrays = blender_mesh.read_mesh(obj.data)
     chosen = picks_for(arrays.vertices, arrays.triangles, features(signature))
