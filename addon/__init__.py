@@ -13,7 +13,7 @@ bl_info = {
 
 import bpy
 
-from . import cli, handlers, operators, panels, preferences, previews, properties, surface
+from . import cli, handlers, live, operators, panels, preferences, previews, properties, surface, viewing
 from .api import OrbifoldError, check, sphere, suggest, unwrap
 from .panels import menus
 
@@ -28,11 +28,15 @@ def register() -> None:
         bpy.utils.register_class(cls)
     menus.register()
     handlers.register()
+    viewing.register()
+    live.register()
     cli.register()
 
 
 def unregister() -> None:
     cli.unregister()
+    live.unregister()
+    viewing.unregister()
     handlers.unregister()
     menus.unregister()
     previews.clear()

@@ -8,7 +8,7 @@ there): wrap it in `object_mode(obj)`. Features are tested for, never version nu
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import Optional
 
@@ -20,6 +20,8 @@ UV_MAP = "Orbifold"
 SHAPE_KEY = "Orbifold Sphere"
 # Edges that we, not the user, made seams: they are taken back when the object is unwrapped anew.
 CUT_ATTRIBUTE = "orbifold_cut"
+# Of edges: 2 p + s for the path p = 1, 2, ... of the cut, s = 1 where the user has made it a seam; 0: not on the cut.
+PATH_ATTRIBUTE = "orbifold_path"
 MAX_UV_MAPS = 8
 
 
@@ -187,14 +189,48 @@ def write_uv(
     The triangles of one face must agree at the corners that they share (faces.py sees to it).
     """
     layer = _uv_layer(mesh, name, keep_others)
-    corners = read_uv(mesh, name) if keep_others else np.zeros((arrays.n_loops, 2), np.float32)
-    corners[arrays.loops.ravel()] = uv.reshape(-1, 2)
+    corners = _at_loops(arrays, uv)
+    if keep_others:
+        others = np.ones(arrays.n_loops, bool)
+        others[arrays.loops.ravel()] = False
+        corners[others] = read_uv(mesh, name)[others]
     if hasattr(layer, "uv"):
         layer.uv.foreach_set("vector", corners.ravel())
     else:
         layer.data.foreach_set("uv", corners.ravel())
     mesh.uv_layers.active = mesh.uv_layers[name]
     mesh.update()
+
+
+def _at_loops(arrays: MeshArrays, uv: np.ndarray) -> np.ndarray:
+    """(loops, 2) float32 of `uv` (m, 3, 2)."""
+    corners = np.zeros((arrays.n_loops, 2), np.float32)
+    corners[arrays.loops.ravel()] = uv.reshape(-1, 2)
+    return corners
+
+
+def write_uv_in_edit_mode(mesh: bpy.types.Mesh, arrays: MeshArrays, uv: np.ndarray, name: str = UV_MAP) -> None:
+    """As `write_uv`, to a UV map that is there, without leaving edit mode. `arrays` were read after the last edit."""
+    bm = bmesh.from_edit_mesh(mesh)
+    layer = bm.loops.layers.uv.get(name)
+    if layer is None:
+        raise BlenderMeshError(f"The UV map {name} is gone: use Orbifold Unwrap, which makes it anew")
+    corners = _at_loops(arrays, uv)
+    pairs = zip(corners[:, 0].tolist(), corners[:, 1].tolist())  # no lists of two, which the garbage collector visits
+    for face in bm.faces:
+        for loop, pair in zip(face.loops, pairs):
+            loop[layer].uv = pair
+    bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
+
+
+def add_triangles(mesh: bpy.types.Mesh, triangles: np.ndarray) -> None:
+    """Faces (m, 3) of the vertices of a mesh that has none yet; `mesh.update(calc_edges=True)` is the caller's."""
+    mesh.loops.add(3 * len(triangles))
+    mesh.loops.foreach_set("vertex_index", np.ascontiguousarray(triangles, np.int32).ravel())
+    mesh.polygons.add(len(triangles))
+    mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * len(triangles), 3, dtype=np.int32))
+    with suppress(AttributeError, RuntimeError, TypeError):  # read-only from version 4 on, needed before
+        mesh.polygons.foreach_set("loop_total", np.full(len(triangles), 3, np.int32))
 
 
 def check_uv_space(mesh: bpy.types.Mesh, name: str = UV_MAP) -> None:
@@ -255,6 +291,9 @@ def mark_seams(mesh: bpy.types.Mesh, pairs: Optional[np.ndarray], among: Optiona
     """Make the edges between these pairs of vertices seams, and take back those of an earlier call, all of them or
     those between the vertices `among`; the user's own seams stay. None only takes back."""
     seams, kept = read_seams(mesh), np.zeros(len(mesh.edges), bool)
+    inside = np.full(len(mesh.vertices), among is None)
+    inside[among if among is not None else []] = True
+    treated = inside[read_edges(mesh)].all(1)
     old = mesh.attributes.get(CUT_ATTRIBUTE)
     if old is not None and (old.domain != "EDGE" or old.data_type != "BOOLEAN"):
         mesh.attributes.remove(old)
@@ -262,12 +301,11 @@ def mark_seams(mesh: bpy.types.Mesh, pairs: Optional[np.ndarray], among: Optiona
     if old is not None:
         ours = np.empty(len(mesh.edges), bool)
         old.data.foreach_get("value", ours)
-        if among is not None:
-            inside = np.zeros(len(mesh.vertices), bool)
-            inside[among] = True
-            kept = ours & ~inside[read_edges(mesh)].all(1)
-            ours &= ~kept
-        seams &= ~ours
+        kept = ours & ~treated
+        seams &= ~(ours & treated)
+    path = read_int_attribute(mesh, PATH_ATTRIBUTE, "EDGE")
+    if path is not None:  # the cut may have been changed in edit mode, where the other attribute is out of reach
+        seams &= (path == 0) | (path % 2 == 1) | ~treated
     cut = np.zeros(len(mesh.edges), bool)
     if pairs is not None and len(pairs):
         found = edge_indices(mesh, pairs)
@@ -276,6 +314,14 @@ def mark_seams(mesh: bpy.types.Mesh, pairs: Optional[np.ndarray], among: Optiona
     attribute = mesh.attributes.get(CUT_ATTRIBUTE) or mesh.attributes.new(CUT_ATTRIBUTE, "BOOLEAN", "EDGE")
     attribute.data.foreach_set("value", (cut & ~seams) | kept)
     mesh.update()
+
+
+def read_our_seams(mesh: bpy.types.Mesh) -> np.ndarray:
+    """(edges,) bool: seams that `mark_seams` has made."""
+    ours, attribute = np.zeros(len(mesh.edges), bool), mesh.attributes.get(CUT_ATTRIBUTE)
+    if attribute is not None and attribute.domain == "EDGE" and attribute.data_type == "BOOLEAN":
+        attribute.data.foreach_get("value", ours)
+    return ours
 
 
 def split_edges(mesh: bpy.types.Mesh, pairs: np.ndarray) -> None:
@@ -325,23 +371,24 @@ def _key_points(key: bpy.types.ShapeKey, n: int) -> np.ndarray:
 # ------------------------------------------------------------------------------------------------ attributes
 
 
-def read_int_attribute(mesh: bpy.types.Mesh, name: str) -> Optional[np.ndarray]:
-    """(n,) int32 of a whole-number vertex attribute; None where the mesh has none of this name."""
+def read_int_attribute(mesh: bpy.types.Mesh, name: str, domain: str = "POINT") -> Optional[np.ndarray]:
+    """(n,) int32 of a whole-number attribute of the vertices, or of the edges; None where the mesh has none of this
+    name."""
     attribute = mesh.attributes.get(name)
-    if attribute is None or attribute.domain != "POINT" or attribute.data_type != "INT":
+    if attribute is None or attribute.domain != domain or attribute.data_type != "INT":
         return None
-    values = np.empty(len(mesh.vertices), np.int32)
+    values = np.empty(len(mesh.edges if domain == "EDGE" else mesh.vertices), np.int32)
     attribute.data.foreach_get("value", values)
     return values
 
 
-def write_int_attribute(mesh: bpy.types.Mesh, name: str, values: np.ndarray) -> None:
+def write_int_attribute(mesh: bpy.types.Mesh, name: str, values: np.ndarray, domain: str = "POINT") -> None:
     attribute = mesh.attributes.get(name)
-    if attribute is not None and (attribute.domain != "POINT" or attribute.data_type != "INT"):
+    if attribute is not None and (attribute.domain != domain or attribute.data_type != "INT"):
         mesh.attributes.remove(attribute)
         attribute = None
     if attribute is None:
-        attribute = mesh.attributes.new(name, "INT", "POINT")
+        attribute = mesh.attributes.new(name, "INT", domain)
     attribute.data.foreach_set("value", np.ascontiguousarray(values, np.int32))
 
 

@@ -44,7 +44,7 @@ class Group:
         self.curvature = curvature
         self.tile, self.gap = sample(points, curvature)  # no point of the tile is farther than gap from these
         self.radius = self.gap
-        self._probes = _probes(self.tile, curvature)
+        self._probes = probes_of(self.tile, curvature)
         self._centres, self._moves = self.tile, with_inverses(generators, curvature)
         self._around = np.eye(3)[None]
         if curvature < 0 and len(generators):
@@ -166,7 +166,7 @@ def _is_near(
     return found
 
 
-def _probes(tile: np.ndarray, curvature: int) -> np.ndarray:
+def probes_of(tile: np.ndarray, curvature: int) -> np.ndarray:
     """(3, 3) points of the tile on no common line: where they go tells elements apart."""
     middle = on_model(tile.mean(0), curvature)
     far = tile[int(np.argmax(distances(tile, middle[None], curvature)))]

@@ -9,15 +9,16 @@ cones are picked than the signature has, it stays as it was typed and the cones 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Optional
 
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
 
-from . import arrangement, checking, cones, core, suggestions, surface
+from . import arrangement, checking, cones, core, layouts, suggestions, surface
 
 NEW_ORDER = 2
+CHANGED: list[Callable[[bpy.types.Mesh], None]] = []  # called when the user has changed an order or the signature
 HOLES = (
     ("refuse", "Refuse", "A border that the signature has no mirror for is an error"),
     ("fill", "Fill Holes for the Computation", "Borders without mirror corners beyond the signature's mirrors, the "
@@ -113,6 +114,13 @@ def _order_changed(item: "OrbifoldCone", _context: bpy.types.Context) -> None:
     cones.write_cones(mesh, [cones.Cone(*pair) for pair in chosen])
     places = arranged(mesh, [vertex for vertex, _ in chosen])
     write_signature(mesh, places.text([order for _, order in chosen]))
+    tell(mesh)
+
+
+def tell(mesh: bpy.types.Mesh) -> None:
+    """The user has changed the orbifold of a mesh."""
+    for listener in CHANGED:
+        listener(mesh)
 
 
 def _signature_changed(settings: "OrbifoldMesh", _context: bpy.types.Context) -> None:
@@ -121,11 +129,11 @@ def _signature_changed(settings: "OrbifoldMesh", _context: bpy.types.Context) ->
     mesh = settings.id_data
     suggestions.forget_replaced(mesh)
     read, picked = read_signature(settings.signature), cones.read_cones(mesh)
-    if read is None or not picked:
-        return
-    orders = arranged(mesh, [cone.vertex for cone in picked]).orders_from(read)
-    if orders is not None:
-        cones.write_cones(mesh, [cones.Cone(cone.vertex, order) for cone, order in zip(picked, orders)])
+    if read is not None and picked:
+        orders = arranged(mesh, [cone.vertex for cone in picked]).orders_from(read)
+        if orders is not None:
+            cones.write_cones(mesh, [cones.Cone(cone.vertex, order) for cone, order in zip(picked, orders)])
+    tell(mesh)
 
 
 class OrbifoldCone(bpy.types.PropertyGroup):
@@ -173,9 +181,12 @@ class OrbifoldMesh(bpy.types.PropertyGroup):
     )
     suggestions: PointerProperty(type=suggestions.OrbifoldSuggestions)
     check: PointerProperty(type=checking.OrbifoldCheck)
+    layouts: CollectionProperty(type=layouts.OrbifoldLayout)
+    colour_before: StringProperty(options={"HIDDEN"})  # the active colour attribute before a heat map
+    unwraps: IntProperty(options={"HIDDEN"})  # how many there were: tells drawings that there is a new one
 
 
-CLASSES = (OrbifoldCone, *suggestions.CLASSES, *checking.CLASSES, OrbifoldMesh)
+CLASSES = (OrbifoldCone, *suggestions.CLASSES, *layouts.CLASSES, *checking.CLASSES, OrbifoldMesh)
 
 
 def register() -> None:

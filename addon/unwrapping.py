@@ -16,7 +16,9 @@ from typing import Optional
 import bpy
 import numpy as np
 
-from . import arrangement, blender_mesh, cones, core, faces, materials, properties, sphere_map, suggestions
+from . import (
+    arrangement, blender_mesh, cones, core, cut_paths, faces, layouts, materials, properties, sphere_map, suggestions,
+)
 
 EXPECTED = (core.OrbifoldError, blender_mesh.BlenderMeshError)  # what is for the person to mend
 NAMED = 6  # components that a report names at most
@@ -273,11 +275,21 @@ class Unwrapping:
             self._write_cones()
             if not settings.sphere_only:
                 write_layouts(obj, self.pieces, settings.mark_seams)
+                self._remember()
             write_keys(obj, [(piece.key, piece.used) for piece in self.pieces if piece.key is not None])
             for number, piece in enumerate(self.pieces if settings.pattern and not settings.sphere_only else ()):
                 ending = f" {number + 1}" if number else ""
                 material = materials.make_material(obj, piece.result, piece.layout, name_ending=ending)
                 materials.assign(obj, material, None if piece.triangles is None else piece.arrays.polygons)
+
+    def _remember(self) -> None:
+        """The cut of all that was treated, and the layout, which only a whole mesh can be shown by."""
+        mesh, pieces = self.obj.data, self.pieces
+        if pieces[0].triangles is None:
+            layouts.keep(mesh, pieces[0].arrays, pieces[0].result, pieces[0].layout, self.settings.weights)
+        seams = np.concatenate([piece.layout.seams for piece in pieces])
+        ends = np.concatenate([piece.result.cones for piece in pieces])
+        layouts.keep_cut(mesh, seams, cut_paths.number_paths(seams, ends))
 
     def _write_cones(self) -> None:
         mesh, pieces = self.obj.data, self.pieces

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Operators, one idea a file."""
 
-from . import check, cones, fixed_boundary, sphere, stretch, suggesting, unwrap
+from . import check, cones, fixed_boundary, sliding, sphere, stretch, suggesting, unwrap, viewing
 
 CLASSES = (
     *cones.CLASSES,
@@ -10,5 +10,7 @@ CLASSES = (
     *unwrap.CLASSES,
     *fixed_boundary.CLASSES,
     *sphere.CLASSES,
+    *viewing.CLASSES,
+    *sliding.CLASSES,
     *check.CLASSES,
 )

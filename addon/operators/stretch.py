@@ -4,15 +4,9 @@
 from __future__ import annotations
 
 import bpy
-import numpy as np
 
-from .. import arrangement, blender_mesh, cones, core, properties
+from .. import arrangement, blender_mesh, cones, core, heat, properties
 from .jobs import mesh_problem, report_failure
-
-ATTRIBUTE = "orbifold_stretch"  # log of the factor by which lengths grow
-COLOUR = "Orbifold Stretch"
-SMALL, LARGE = (0.02, 0.13, 0.75), (0.75, 0.03, 0.03)  # blue, red; linear
-
 
 def stretch_problem(context: bpy.types.Context) -> str | None:
     problem = mesh_problem(context)
@@ -21,20 +15,13 @@ def stretch_problem(context: bpy.types.Context) -> str | None:
     return problem
 
 
-def colours_of(scale: np.ndarray) -> np.ndarray:
-    """(n, 4) linear: blue where lengths shrink, white where they stay, red where they grow; half the colour where they
-    are half or twice as long."""
-    amount = 1 - np.exp(-np.abs(scale))[:, None]
-    full = np.where(scale[:, None] < 0, SMALL, LARGE)
-    return np.column_stack([1 + amount * (full - 1), np.ones(len(scale))])
-
-
 class MESH_OT_orbifold_show_stretch(bpy.types.Operator):
     bl_idname = "mesh.orbifold_show_stretch"
     bl_label = "Show Predicted Stretch"
     bl_description = (
         "Colour the mesh by how much the conformal map with its cones stretches lengths: blue where the layout is "
-        f"small, red where it is large, white between. Written to the attributes {ATTRIBUTE} and {COLOUR}"
+        f"small, red where it is large, white between. Written to the attributes {heat.STRETCH.attribute} and "
+        f"{heat.STRETCH.colour}"
     )
     bl_options = {"REGISTER", "UNDO"}
 
@@ -52,15 +39,12 @@ class MESH_OT_orbifold_show_stretch(bpy.types.Operator):
             arrays = blender_mesh.read_mesh(mesh)
             try:
                 prediction = _predict(mesh, arrays)
-                for name, kind in ((ATTRIBUTE, "FLOAT"), (COLOUR, "FLOAT_COLOR")):
-                    blender_mesh.check_attribute(mesh, name, kind)
+                heat.check(mesh, heat.STRETCH)
             except (core.OrbifoldError, blender_mesh.BlenderMeshError) as error:
                 report_failure(self, context, arrays, error)
                 return {"CANCELLED"}
-            blender_mesh.write_float_attribute(mesh, ATTRIBUTE, prediction.scale)
-            blender_mesh.write_vertex_colour(mesh, COLOUR, colours_of(prediction.scale))
-        shown = _show_colours(context)
-        self.report({"INFO"}, f"Predicted area spread {prediction.spread:.2f}. {shown}")
+            heat.show(context, mesh, heat.STRETCH, prediction.scale)
+        self.report({"INFO"}, f"Predicted area spread {prediction.spread:.2f}. {shading_hint(context)}")
         return {"FINISHED"}
 
 
@@ -73,11 +57,10 @@ def _predict(mesh: bpy.types.Mesh, arrays: blender_mesh.MeshArrays) -> core.Pred
     )
 
 
-def _show_colours(context: bpy.types.Context) -> str:
-    """Solid shading shows attributes from now on; other kinds of shading are left as they are."""
+def shading_hint(context: bpy.types.Context) -> str:
+    """Where to look."""
     space = context.space_data
     if space is not None and space.type == "VIEW_3D" and space.shading.type == "SOLID":
-        space.shading.color_type = "VERTEX"
         return "Blue is small in the layout, red is large."
     return "Solid shading with the colour Attribute shows it: blue is small in the layout, red is large."
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 from bpy.props import BoolProperty, EnumProperty
 
-from .. import blender_mesh, core, materials, unwrapping
+from .. import blender_mesh, core, cut_paths, layouts, materials, unwrapping
 from .embedding import EmbeddingOperator
 
 PERIODIC = (
@@ -84,6 +84,8 @@ class UVOperator(EmbeddingOperator):
         blender_mesh.write_uv(obj.data, self._arrays, layout.uv)
         if self.mark_seams:
             blender_mesh.mark_seams(obj.data, layout.seams)
+        layouts.keep(obj.data, self._arrays, result, layout, self.weights)
+        layouts.keep_cut(obj.data, layout.seams, cut_paths.number_paths(layout.seams, result.cones))
         if key is not None:
             blender_mesh.write_shape_key(obj, key)
         if self.pattern:

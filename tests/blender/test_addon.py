@@ -9,8 +9,8 @@ import pytest
 from conftest import checks_of, zip_path
 
 SCRIPTS = (
-    "registration.py", "picking.py", "unwrapping.py", "orbifolds.py", "suggesting.py", "bad_input.py", "checking.py",
-    "objects.py",
+    "registration.py", "picking.py", "unwrapping.py", "orbifolds.py", "suggesting.py", "seeing.py", "bad_input.py",
+    "checking.py", "objects.py",
 )
 
 

@@ -24,6 +24,8 @@ def state() -> dict:
         "types": {name for name in dir(bpy.types) if "orbifold" in name.lower()},
         "operators": operators,
         "mesh": {name for name in bpy.types.Mesh.bl_rna.properties.keys()},
+        "scene": {name for name in bpy.types.Scene.bl_rna.properties.keys()},
+        "window manager": {name for name in bpy.types.WindowManager.bl_rna.properties.keys()},
         "menus": {name: len(getattr(bpy.types, name)._dyn_ui_initialize()) for name in MENUS},
         "handlers": handlers,
     }
@@ -43,6 +45,7 @@ def check_enabling_adds_operators_menus_and_the_property():
     wanted = "uv.orbifold_unwrap object.orbifold_sphere mesh.orbifold_add_cones mesh.orbifold_suggest_cones"
     assert set(wanted.split()) <= now["operators"]
     assert "orbifold" in now["mesh"]
+    assert "orbifold_view" in now["scene"] and "orbifold_live" in now["window manager"]
     assert all(now["menus"][name] == before["menus"][name] + 1 for name in MENUS), now["menus"]
     assert {"VIEW3D_PT_orbifold", "IMAGE_PT_orbifold"} <= now["types"]
 
@@ -58,9 +61,13 @@ def check_every_operator_has_a_tooltip():
 
 
 def check_disabling_leaves_nothing():
+    overlay, live = part("overlay"), part("live")
+    bpy.context.window_manager.orbifold_live = True
+    assert len(overlay._State.handles) == 3
     bpy.ops.preferences.addon_disable(module=module_name())
     now = state()
     assert now == before, {key: (before[key], now[key]) for key in before if before[key] != now[key]}
+    assert not overlay._State.handles and not bpy.app.timers.is_registered(live._tick)
 
 
 def check_it_can_be_enabled_again():
