@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 from bpy.props import BoolProperty, EnumProperty
 
-from .. import blender_mesh, core, cut_paths, faces, layouts, materials, sphere_map
+from .. import blender_mesh, core, cut_paths, faces, layouts, live, materials, sphere_map
 from .embedding import EmbeddingOperator
 
 PERIODIC = (
@@ -92,6 +92,7 @@ class UVOperator(EmbeddingOperator):
             blender_mesh.mark_seams(obj.data, layout.seams)
         layouts.keep(obj.data, self._arrays, result, layout, self.weights)
         layouts.keep_cut(obj.data, layout.seams, cut_paths.number_paths(layout.seams, result.cones))
+        live.note_written(obj.data)
         if key is not None:
             blender_mesh.write_shape_key(obj, key)
         if self.pattern:

@@ -69,6 +69,9 @@ def draw_entries(self, _context: bpy.types.Context) -> None:
     self.layout.operator("uv.orbifold_unwrap")
     self.layout.operator("mesh.orbifold_suggest_cones")
     self.layout.operator("mesh.orbifold_show_stretch")
+    self.layout.operator("mesh.orbifold_slide_cone").vertex = -1
+    for name in ("mesh.orbifold_show_distortion", "object.orbifold_tile_preview", "object.orbifold_pattern"):
+        self.layout.operator(name)
 
 
 UV_MENUS = ("VIEW3D_MT_uv_map", "IMAGE_MT_uvs")
