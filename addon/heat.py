@@ -27,7 +27,8 @@ class Measure:
 
 STRETCH = Measure(
     *("Predicted length factor", "orbifold_stretch", "Orbifold Stretch", 1.0),
-    tuple((float(np.log(factor)), text) for factor, text in ((0.125, "1/8"), (0.5, "1/2"), (1, "1"), (2, "2"), (8, "8"))),
+    tuple((float(np.log(factor)), text)
+          for factor, text in ((0.125, "1/8"), (0.5, "1/2"), (1, "1"), (2, "2"), (8, "8"))),
 )
 AREA = Measure(
     *("Area factor", "orbifold_area", "Orbifold Area", 0.5),

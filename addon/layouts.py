@@ -140,12 +140,12 @@ def read(mesh: bpy.types.Mesh, arrays: blender_mesh.MeshArrays) -> Layout:
     there = blender_mesh.read_uv(mesh)
     for item in reversed(mesh.orbifold.layouts):
         kept = _unpacked(item.arrays)
-        loops = kept["loops"]
-        if loops.max() < len(there) and np.abs(there[loops] - kept["uv"]).max() < SAME * max(1, np.abs(kept["uv"]).max()):
+        loops, known = kept["loops"], kept["uv"]
+        if loops.max() < len(there) and np.abs(there[loops] - known).max() < SAME * max(1, np.abs(known).max()):
             break
     else:
         raise blender_mesh.BlenderMeshError(
-            f"The mesh or its UV map {blender_mesh.UV_MAP} has changed since it was unwrapped: use Orbifold Unwrap again"
+            f"The mesh or its UV map {UV_MAP} has changed since it was unwrapped: use Orbifold Unwrap again"
         )
     chart = chart_of(item.chart, item.geometry, kept["points"], kept["uv"])
     uv = there[arrays.loops].astype(np.float64)

@@ -21,7 +21,8 @@ def draw(context: bpy.types.Context) -> None:
     if obj is None or obj.type != "MESH" or not obj.visible_get():
         return
     measure = heat.shown(obj.data)
-    if measure is None or context.space_data.shading.type not in ("SOLID", "WIREFRAME"):
+    shading = context.space_data.shading
+    if measure is None or shading.type != "SOLID" or shading.color_type != "VERTEX":
         return
     scale = context.preferences.system.ui_scale or 1.0
     left, bottom = _corner(context, scale)

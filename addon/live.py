@@ -94,6 +94,13 @@ def expect(mesh: bpy.types.Mesh) -> None:
     _State.expected.add(mesh.name_full)
 
 
+def note_written(mesh: bpy.types.Mesh) -> None:
+    """The UVs are those of the present state: an operator has written them."""
+    _State.computing = _State.settle_at = None
+    _State.handled[mesh.name_full] = _state_of(mesh)
+    _State.problems.pop(mesh.name_full, None)
+
+
 def cancel() -> None:
     """Give up what is computed; the UVs stay as they are until the next action."""
     if _State.computing is not None:
@@ -102,7 +109,8 @@ def cancel() -> None:
 
 
 def _object() -> Optional[bpy.types.Object]:
-    obj = bpy.context.view_layer.objects.active
+    view_layer = getattr(bpy.context, "view_layer", None)  # none while Blender starts or renders
+    obj = view_layer.objects.active if view_layer is not None else None
     return obj if obj is not None and obj.type == "MESH" and obj.mode in ("OBJECT", "EDIT") else None
 
 

@@ -192,7 +192,8 @@ def draw_places() -> None:
     gpu.state.blend_set("ALPHA")
     for depth, opacity in (("NONE", HIDDEN), ("LESS_EQUAL", 1.0)):
         gpu.state.depth_test_set(depth)
-        for wanted, part, draw in ((settings.show_cut, NEARER, _draw_cut), (settings.show_cones, CONES_NEARER, _draw_cones)):
+        parts = (settings.show_cut, NEARER, _draw_cut), (settings.show_cones, CONES_NEARER, _draw_cones)
+        for wanted, part, draw in parts:
             if wanted:
                 with gpu.matrix.push_pop():
                     gpu.matrix.load_matrix(_nearer(context, part) @ seen_from)
@@ -337,8 +338,10 @@ def _read_sides(mesh: bpy.types.Mesh, drawn: _Drawn) -> tuple:
             paths.append(path)
     spots = [(number, spot) for number, (vertex, _) in enumerate(drawn.cones)
              for spot in {loop[layer].uv[:] for loop in bm.verts[vertex].link_loops}]
-    return (np.array(ends).reshape(-1, 2, 2), np.array(paths, int), np.array([spot for _, spot in spots]).reshape(-1, 2),
-            np.array([number for number, _ in spots], int))
+    return (
+        np.array(ends).reshape(-1, 2, 2), np.array(paths, int),
+        np.array([spot for _, spot in spots]).reshape(-1, 2), np.array([number for number, _ in spots], int),
+    )
 
 
 def _draw_sides(context: bpy.types.Context, settings, drawn: _Drawn) -> None:

@@ -33,7 +33,8 @@ class Pattern:
 
 PATTERNS = {
     "CHECKER": Pattern(
-        "Checker", "Squares in two colours, about every corner of the lattice", ((16, 0, False), (0, 16, False)), True, 0.0
+        "Checker", "Squares in two colours, about every corner of the lattice",
+        ((16, 0, False), (0, 16, False)), True, 0.0
     ),
     "STRIPES": Pattern(
         "Stripes", "For 2222: stripes, which half a turn leaves as they are", ((24, 0, False),), False, 0.0
@@ -133,9 +134,11 @@ def make_material(obj: bpy.types.Object, kind: str, lattice: np.ndarray) -> bpy.
     for wave in waves[1:]:
         total = math("MULTIPLY" if pattern.product else "ADD", total, wave)
     chosen = math("GREATER_THAN", math("ADD", total, pattern.offset), 0.0)
-    colour = node("ShaderNodeMixRGB")
+    colour = node("ShaderNodeValToRGB")
+    colour.color_ramp.interpolation = "CONSTANT"
+    for element, place, shade in zip(colour.color_ramp.elements, (0.0, 0.5), (DARK, LIGHT)):
+        element.position, element.color = place, (*shade, 1.0)
     tree.links.new(chosen, colour.inputs["Fac"])
-    colour.inputs["Color1"].default_value, colour.inputs["Color2"].default_value = (*DARK, 1.0), (*LIGHT, 1.0)
     shader, output = node("ShaderNodeBsdfPrincipled"), node("ShaderNodeOutputMaterial")
     shader.inputs["Roughness"].default_value = 0.6
     tree.links.new(colour.outputs["Color"], shader.inputs["Base Color"])

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """An object that shows a layout's tile among its copies. Its mesh is the tile, and beside it a loose vertex for each
-copy, with the motion as attributes; a modifier of geometry nodes sets instances of the tile there. In the Poincaré disk
-motions are no motions of space: there the nodes move the points of the instances."""
+copy, with the motion as attributes; a modifier of geometry nodes sets instances of the tile there. In the Poincaré
+disk motions are no motions of space: there the nodes move the points of the instances."""
 
 from __future__ import annotations
 
@@ -145,8 +145,8 @@ def _mesh_of(name: str, tile: Tile, elements: np.ndarray, curvature: int) -> bpy
 
 
 def motions(elements: np.ndarray, curvature: int) -> tuple[np.ndarray, ...]:
-    """(g, 3) each: place, rotation (Euler angles) and scale of the instances, and where, in the disk, its middle goes:
-    there z becomes w = exp(i turn) z, with z conjugate where the element reflects, and then (w + c) / (1 + conj(c) w)."""
+    """(g, 3) each: place, rotation (Euler angles), scale of the instances, and where, in the disk, the middle goes, c:
+    z becomes w = exp(i turn) z, with z conjugate where the element reflects, and then (w + c) / (1 + conj(c) w)."""
     g = len(elements)
     places, turns, scales, middles = np.zeros((g, 3)), np.zeros((g, 3)), np.ones((g, 3)), np.zeros((g, 3))
     reflects = np.linalg.det(elements) < 0
@@ -217,11 +217,15 @@ def _nodes(disk: bool) -> bpy.types.NodeTree:
     if tree is not None and tree.bl_idname == "GeometryNodeTree":
         return tree
     tree = bpy.data.node_groups.new(name, "GeometryNodeTree")
+    if hasattr(tree, "is_modifier"):
+        tree.is_modifier = True
     blender_mesh.group_socket(tree, "Geometry", "INPUT", "NodeSocketGeometry")
     blender_mesh.group_socket(tree, "Geometry", "OUTPUT", "NodeSocketGeometry")
     build = _Builder(tree)
     entry, end = build.node("NodeGroupInput"), build.node("NodeGroupOutput")
-    parts = build.node("GeometryNodeSeparateGeometry", Geometry=entry.outputs[0], Selection=build.named(IS_COPY, "BOOLEAN"))
+    parts = build.node(
+        "GeometryNodeSeparateGeometry", Geometry=entry.outputs[0], Selection=build.named(IS_COPY, "BOOLEAN")
+    )
     copies = build.node(
         "GeometryNodeInstanceOnPoints", Points=parts.outputs[0], Instance=parts.outputs[1],
         Rotation=build.named(TURN, "FLOAT_VECTOR"), Scale=build.named(SCALE, "FLOAT_VECTOR"),

@@ -69,7 +69,8 @@ class MESH_OT_orbifold_show_distortion(LayoutOperator, bpy.types.Operator):
         heat.show(context, obj.data, measure, heat.at_vertices(arrays, values))
         if self.measure == "ANGLE":
             return f"The largest angle distortion of a triangle is {np.exp(ratio.max(initial=0.0)):.2f}."
-        return f"Areas are from {np.exp(area.min(initial=0.0)):.2g} to {np.exp(area.max(initial=0.0)):.2g} of the average."
+        least, most = np.exp(area.min(initial=0.0)), np.exp(area.max(initial=0.0))
+        return f"Areas are from {least:.2g} to {most:.2g} times the average."
 
 
 class MESH_OT_orbifold_hide_distortion(bpy.types.Operator):

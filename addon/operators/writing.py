@@ -6,7 +6,11 @@ from __future__ import annotations
 import bpy
 from bpy.props import BoolProperty, EnumProperty
 
+<<<<<<< HEAD
 from .. import blender_mesh, core, cut_paths, layouts, materials, unwrapping
+=======
+from .. import blender_mesh, core, cut_paths, faces, layouts, live, materials, sphere_map
+>>>>>>> seeing
 from .embedding import EmbeddingOperator
 
 PERIODIC = (
@@ -86,6 +90,7 @@ class UVOperator(EmbeddingOperator):
             blender_mesh.mark_seams(obj.data, layout.seams)
         layouts.keep(obj.data, self._arrays, result, layout, self.weights)
         layouts.keep_cut(obj.data, layout.seams, cut_paths.number_paths(layout.seams, result.cones))
+        live.note_written(obj.data)
         if key is not None:
             blender_mesh.write_shape_key(obj, key)
         if self.pattern:

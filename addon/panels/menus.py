@@ -85,6 +85,7 @@ class VIEW3D_MT_orbifold(bpy.types.Menu):
             for name in group:
                 layout.operator(name)
             layout.separator()
+        layout.operator("mesh.orbifold_slide_cone").vertex = -1
         layout.operator_menu_enum("mesh.orbifold_show_defect", "kind")
         layout.operator_menu_enum("mesh.orbifold_mend", "kind")
         if mesh_problem(context) is None:
@@ -104,7 +105,9 @@ MENU_GROUPS = (
     ("uv.orbifold_unwrap", "uv.orbifold_fixed_boundary", "object.orbifold_sphere"),
     ("mesh.orbifold_suggest_cones", "mesh.orbifold_add_cones", "mesh.orbifold_remove_cone", "mesh.orbifold_move_cone",
      "mesh.orbifold_clear_cones", "mesh.orbifold_jump_to_cone"),
-    ("mesh.orbifold_show_stretch", "mesh.orbifold_check"),
+    ("mesh.orbifold_show_stretch", "mesh.orbifold_show_distortion", "object.orbifold_tile_preview",
+     "object.orbifold_pattern"),
+    ("mesh.orbifold_check",),
 )
 UV_MENUS = ("VIEW3D_MT_uv_map", "IMAGE_MT_uvs")
 OBJECT_MENUS = ("VIEW3D_MT_object",)

@@ -309,7 +309,8 @@ def check_live_follows_a_cone_an_order_and_the_signature():
         arrays = blender_mesh.read_mesh(obj.data)
         for _ in range(2):
             cones = [vertex for vertex, _ in picked(obj)]
-            result = core.embed(arrays.vertices, arrays.triangles, obj.data.orbifold.signature, cones, weights="conformal")
+            signature = obj.data.orbifold.signature
+            result = core.embed(arrays.vertices, arrays.triangles, signature, cones, weights="conformal")
             assert np.allclose(uv_in_edit_mode(obj), result.uv.reshape(-1, 2), atol=1e-6)
             assert np.abs(uv_in_edit_mode(obj) - before).max() > 1e-4
             before = uv_in_edit_mode(obj)
