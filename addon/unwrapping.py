@@ -17,7 +17,8 @@ import bpy
 import numpy as np
 
 from . import (
-    arrangement, blender_mesh, cones, core, cut_paths, faces, layouts, materials, properties, sphere_map, suggestions,
+    arrangement, blender_mesh, cones, core, cut_paths, faces, layouts, live, materials, properties, sphere_map,
+    suggestions,
 )
 
 EXPECTED = (core.OrbifoldError, blender_mesh.BlenderMeshError)  # what is for the person to mend
@@ -290,6 +291,7 @@ class Unwrapping:
         seams = np.concatenate([piece.layout.seams for piece in pieces])
         ends = np.concatenate([piece.result.cones for piece in pieces])
         layouts.keep_cut(mesh, seams, cut_paths.number_paths(seams, ends))
+        live.note_written(mesh)
 
     def _write_cones(self) -> None:
         mesh, pieces = self.obj.data, self.pieces

@@ -6,11 +6,7 @@ from __future__ import annotations
 import bpy
 from bpy.props import BoolProperty, EnumProperty
 
-<<<<<<< HEAD
-from .. import blender_mesh, core, cut_paths, layouts, materials, unwrapping
-=======
-from .. import blender_mesh, core, cut_paths, faces, layouts, live, materials, sphere_map
->>>>>>> seeing
+from .. import blender_mesh, core, cut_paths, layouts, live, materials, unwrapping
 from .embedding import EmbeddingOperator
 
 PERIODIC = (
