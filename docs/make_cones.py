@@ -80,9 +80,9 @@ def predicted_rows(name, mesh, rows):
 def study(name):
     """All numbers of one mesh."""
     mesh = core.read_mesh(MESHES / name)
-    begun = time.perf_counter()
+    begun = time.process_time()
     usual = core.suggest_cones(*mesh)
-    seconds = time.perf_counter() - begun
+    seconds = time.process_time() - begun
     flat = core.suggest_cones(*mesh, flat=True)[0]
     rows = random_rows(name, mesh)
     found = {"name": name, "vertices": len(mesh[0]), "seconds": seconds, "random": rows}
@@ -98,35 +98,37 @@ def study(name):
 
 TEXT = """# Choosing cones
 
-A cone is a vertex where the tiling's pieces meet in a star: {n} of them at a cone of order n. Everything else of the unwrap
-follows from the cones, so they decide how large the pattern comes out where. *Suggest Cones* finds good ones; this page says what
+A cone is a vertex where the tiling's pieces meet in a star: n of them at a cone of order n. All else about an unwrap follows
+from the cones, so they decide how large the pattern comes out where. *Suggest Cones* finds good ones; this page says what
 its numbers mean and how well they keep what they promise.
 
 **The spread.** An unwrap that keeps angles must change areas. The number beside a suggestion is the standard deviation of the
-logarithm of that change, over the surface. 0 would be an isometry. With 0.5 most of the surface is within a factor of 1.6 of
-the mean area, with 1 within 2.7, with 2 within 7.4; below 1 hardly anybody sees it.
+logarithm of that change, over the surface; 0 is an isometry. With 0.5 two thirds of the surface are within a factor of 1.6 of
+the mean area, with 1 within 2.7, with 2 within 7.4. Below 1 it seldom shows.
 
-**Where cones help.** The map swells at a cone, so cones belong where a surface has too little room on the tile: at the ends of limbs,
-on noses, ears, tails, at corners. In flat or hollow places they do harm. What is far from all cones gets little of the tile and a
-large, blurred pattern. The star itself can be seen if the pattern is not symmetric about it; a vertex group (*keep away*) moves
-cones out of sight, at a price that the new number names.
+**Where cones help.** The map swells at a cone, so cones belong where the surface would else be squeezed: at the ends of limbs,
+on noses, ears, tails and corners. In flat or hollow places they do harm. What is far from all cones gets little of the
+tile and a large, blurred pattern. The star itself can be seen if the pattern is not symmetric about it; a vertex group
+that cones keep away from moves them out of sight, at a price that the new number names.
 
-**How many.** Two to four cones are enough for heads and statues. Each long limb would like one of its own: `2222` has four. More
-(`22222`, ...) need a tile of the hyperbolic plane, which is fixed in shape, so that angles suffer; they are ranked by both.
+**How many.** Two to four are enough for heads and statues. Each long limb would like one of its own, and `2222` has four. More
+(`22222` and so on) need a tile of the hyperbolic plane whose shape is fixed, so that angles suffer.
 
-**Which signature.** For a picture that repeats take `442`, `333`, `632` or `2222`, the plane's: nothing else repeats. Among those, the
+**Which signature.** For a picture that repeats take `442`, `333`, `632` or `2222`, the plane's; no others repeat. Among those the
 spread decides. Disks have corners on their border instead (`*442`), and `4*2` or `22*` a cone or two inside.
 
-**Your own.** Pick one vertex or more that must be cones, and *Suggest Cones* completes them. On a mesh with a mirror plane the suggestions
-are symmetric, as far as its vertices allow.
+**Your own.** Pick the vertices that must be cones, and *Suggest Cones* completes them. On a mesh with a mirror plane
+suggestions are symmetric, as far as its vertices allow.
 
 ## Measured
 
-By `./build.sh docs cones`. The one-click suggestion is the best of the plane's signatures; then the best of all usual ones, where that is
-another. *Predicted* and *measured* are spreads of log area, measured ones from the embedding with conformal weights, *qc* is its mean
-quasi-conformal error (1 is perfect; a row with a star has a tile that is not conformal, and its prediction counts angles too). *Random*: the best and
-the median of 200 random triples, really embedded{rotation}. *BFF*: spreads that boundary-first flattening's eight automatic cones of any
-angle leave, with which nothing tiles. Seconds are those of all usual suggestions together, one thread of a busy machine.
+By `./build.sh docs cones`. The one-click suggestion is the best of the plane's signatures; where another one is better, it
+follows. *Predicted* and *measured* are spreads of log area, measured ones from the embedding with conformal weights; *qc* is
+its mean quasi-conformal error (1 is perfect; where a signature has a star, its tile is not conformal, and the prediction
+counts angles too). *Random*: the best and the median of 200 random triples, really embedded (`442`, `432` and `237`, on a large
+mesh in turn; on disks `*442`, `*432` and `*237` with corners on the border). *BFF*: the spread that the eight automatic cones of
+boundary-first flattening leave, whose angles are arbitrary, so that nothing tiles. Seconds are the processor's, for all
+usual suggestions together.
 
 | mesh | vertices | suggestion | cones | predicted | measured | qc | random: best | median | BFF | seconds |
 |---|---|---|---|---|---|---|---|---|---|---|
@@ -148,12 +150,12 @@ def suggestion_rows(studies):
     for found in studies:
         spreads = np.array([row[2] for row in found["random"]])
         bff = SPHERES.get(found["name"])
-        shown = ["flat"] if found["flat"][0].cones == found["best"][0].cones else ["flat", "best"]
+        shown = ["flat"] if found["flat"][0].signature == found["best"][0].signature else ["flat", "best"]
         for which in shown:
             made, spread, angles = found[which]
             first = which == "flat"
             cells = [found["name"].split(".")[0] if first else "", found["vertices"] if first else ""]
-            cells += [f"`{made.signature}`{' \\*' if made.measured else ''}", ", ".join(map(str, made.cones))]
+            cells += [f"`{made.signature}`" + r" \*" * made.measured, ", ".join(map(str, made.cones))]
             cells += [f"{made.predicted:.2f}", f"{spread:.2f}", f"{angles:.2f}"]
             cells += [f"{spreads.min():.2f}", f"{np.median(spreads):.2f}"] if first else ["", ""]
             cells += ["" if bff is None or not first else f"{bff:.2f}", f"{found['seconds']:.1f}" if first else ""]
@@ -217,8 +219,6 @@ def main():
         sys.exit("error: ../shared/meshes is not there, which this page is about")
     studies = [study(name) for name in there]
     text = TEXT.format(
-        n="n",
-        rotation=" (442, 432 and 237 in turn; on disks with their *)",
         suggestions="\n".join(suggestion_rows(studies)),
         agreement="\n".join(agreement_rows(studies)),
     )

@@ -41,6 +41,19 @@ def test_pictures_are_small_in_all_and_each_is_shown():
     assert {path.name for path in pictures} == {picture.partition("/")[2] for _, _, picture in ROWS}
 
 
+def test_the_table_of_cones_keeps_what_it_promises():
+    """One click is at most 1.1 times the best of 200 random triples, and the prediction near what was measured."""
+    text = (CHECKOUT / "docs" / "cones.md").read_text(encoding="utf-8")
+    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines() if line.count("|") == 12]
+    rows = [row for row in rows[2:] if row[0]]
+    assert len(rows) == 11
+    for name, _, signature, cones, predicted, measured, angles, random_best, median, _, _ in rows:
+        said, spread, best = float(predicted), float(measured), float(random_best)
+        assert features(signature.strip("`")).geometry == "euclidean" and len(cones.split(",")) <= 4, name
+        assert spread <= 1.1 * best <= 1.1 * float(median) and abs(said / spread - 1) < 0.05, name
+        assert 1 <= float(angles) < 1.3, name
+
+
 def test_links_lead_somewhere():
     for page in [CHECKOUT / "README.md", *(CHECKOUT / "docs").glob("*.md")]:
         for link in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8")):
