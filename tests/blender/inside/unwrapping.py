@@ -292,7 +292,6 @@ def check_nothing_else_of_the_mesh_changes():
     bpy.ops.uv.orbifold_unwrap(mark_seams=False)
     after = digest(obj)
     obj.data.uv_layers.remove(obj.data.uv_layers["Orbifold"])
-    obj.data.attributes.remove(obj.data.attributes[blender_mesh.PATH_ATTRIBUTE])  # what remembers the cut
     stripped = digest(obj)
     other = quad_blob()
     other.data.attributes.new("mine", "INT", "POINT").data[3].value = 5
