@@ -85,7 +85,8 @@ class UVOperator(EmbeddingOperator):
         if self.mark_seams:
             blender_mesh.mark_seams(obj.data, layout.seams)
         layouts.keep(obj.data, self._arrays, result, layout, self.weights)
-        layouts.keep_cut(obj.data, layout.seams, cut_paths.number_paths(layout.seams, result.cones))
+        if self.mark_seams or blender_mesh.PATH_ATTRIBUTE in obj.data.attributes:
+            layouts.keep_cut(obj.data, layout.seams, cut_paths.number_paths(layout.seams, result.cones))
         live.note_written(obj.data)
         if key is not None:
             blender_mesh.write_shape_key(obj, key)
