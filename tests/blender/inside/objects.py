@@ -430,6 +430,7 @@ def check_every_operator_is_in_a_menu_and_can_refuse():
     """F3 finds what is in menus; poll messages say what is missing."""
     obj = blob()
     bpy.ops.mesh.orbifold_suggest_cones()
+    bpy.ops.mesh.orbifold_place_suggestion(index=0)
     menus, layout = part("panels.menus"), Layout()
     for menu in (menus.VIEW3D_MT_orbifold, menus.MESH_MT_orbifold_signatures):
         menu.draw(type("Menu", (), {"layout": layout})(), bpy.context)
