@@ -206,7 +206,7 @@ def picture(studies, size=480, margin=36):
     lines.append(f'<text x="{size / 2}" y="{size - 6}" text-anchor="middle">predicted spread of log area</text>')
     lines.append(f'<text x="10" y="{margin - 14}">measured</text>')
     for k, (signature, dots) in enumerate(points.items()):
-        path = "".join(f"M{at(*dot)}h0" for dot in dots)
+        path = "".join(dict.fromkeys(f"M{at(*dot)}h0" for dot in dots))  # many are the same to a tenth of a pixel
         colour = COLOURS[signature]
         lines.append(f'<path d="{path}" stroke="{colour}" stroke-width="2" stroke-linecap="round" opacity="0.6"/>')
         lines.append(f'<text x="{margin + 12}" y="{margin + 6 + 16 * k}" fill="{colour}">{signature}</text>')
