@@ -288,9 +288,10 @@ class Unwrapping:
         mesh, pieces = self.obj.data, self.pieces
         if pieces[0].triangles is None:
             layouts.keep(mesh, pieces[0].arrays, pieces[0].result, pieces[0].layout, self.settings.weights)
-        seams = np.concatenate([piece.layout.seams for piece in pieces])
-        ends = np.concatenate([piece.result.cones for piece in pieces])
-        layouts.keep_cut(mesh, seams, cut_paths.number_paths(seams, ends))
+        if self.settings.mark_seams or blender_mesh.PATH_ATTRIBUTE in mesh.attributes:
+            seams = np.concatenate([piece.layout.seams for piece in pieces])
+            ends = np.concatenate([piece.result.cones for piece in pieces])
+            layouts.keep_cut(mesh, seams, cut_paths.number_paths(seams, ends))
         live.note_written(mesh)
 
     def _write_cones(self) -> None:
