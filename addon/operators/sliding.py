@@ -143,8 +143,15 @@ def _move(mesh: bpy.types.Mesh, vertex: int) -> None:
 
 class MESH_OT_orbifold_cancel_live(bpy.types.Operator):
     bl_idname = "mesh.orbifold_cancel_live"
-    bl_label = "Cancel"
+    bl_label = "Cancel Orbifold Live"
     bl_description = "Give up what Orbifold Live computes; the UVs stay as they are until the next change"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        problem = mesh_problem(context)
+        if problem is not None:
+            cls.poll_message_set(problem)
+        return problem is None
 
     def execute(self, _context: bpy.types.Context) -> set[str]:
         live.cancel()

@@ -42,7 +42,7 @@ def draw_live(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     if done is not None:
         row = column.row(align=True)
         row.label(text=f"Computing: {done:.0%}")
-        row.operator("mesh.orbifold_cancel_live", icon="CANCEL")
+        row.operator("mesh.orbifold_cancel_live", text="Cancel", icon="CANCEL")
     problem = live.problem(mesh)
     if problem is not None:
         scale = context.preferences.system.ui_scale or 1.0
