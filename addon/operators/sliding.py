@@ -13,6 +13,7 @@ from mathutils import Vector
 
 from .. import cones, live, properties
 from .cones import ConeOperator
+from .jobs import mesh_problem
 
 ARROWS = {"LEFT_ARROW": (-1, 0), "RIGHT_ARROW": (1, 0), "DOWN_ARROW": (0, -1), "UP_ARROW": (0, 1)}
 ENDS = ("RET", "NUMPAD_ENTER", "ESC", "RIGHTMOUSE", "SPACE")
