@@ -17,6 +17,7 @@ import addon_utils
 import bmesh
 import bpy
 import numpy as np
+from mathutils import Matrix
 
 from .errors import RunError
 
@@ -62,7 +63,7 @@ def _choose(path: Path, object_name: Optional[str], active: Optional[str]) -> bp
 
 def _keep_only(obj: bpy.types.Object) -> None:
     """Everything else that came with the file goes; `obj` stays where it stood and becomes the active object."""
-    place = obj.matrix_world.copy()
+    place = _place(obj)
     for other in list(bpy.data.objects):
         if other is not obj:
             bpy.data.objects.remove(other)
@@ -77,6 +78,18 @@ def _keep_only(obj: bpy.types.Object) -> None:
     bpy.context.view_layer.objects.active = obj
     if obj.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def _place(obj: bpy.types.Object) -> Matrix:
+    """Its matrix in the world. Blender 4 and later compute that of an object that came from a file only once it is in
+    the scene, with what it hangs on."""
+    collection, one = bpy.context.scene.collection, obj
+    while one is not None:
+        if one.name not in bpy.context.scene.objects:
+            collection.objects.link(one)
+        one = one.parent
+    bpy.context.view_layer.update()
+    return obj.matrix_world.copy()
 
 
 # ------------------------------------------------------------------------------------------------ by ending
