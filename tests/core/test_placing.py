@@ -10,7 +10,7 @@ from meshes import icosphere
 
 placing = surfaces.bare("headless.placing")
 core = placing.core
-read_arguments = surfaces.bare("headless.arguments").read_arguments
+read_request = surfaces.bare("headless.arguments").read_request
 
 
 @pytest.fixture
@@ -20,7 +20,7 @@ def ball():
 
 
 def placed(mesh, *words):
-    return placing.embed_placed(read_arguments(words), mesh)
+    return placing.embed_placed(read_request(words).arguments, mesh)
 
 
 def failing(monkeypatch, signatures, status="ORB_CERTIFICATE_FAILED"):
