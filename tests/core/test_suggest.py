@@ -188,22 +188,21 @@ def test_arrays_may_change_after_the_start(mesh):
 
 
 @pytest.mark.parametrize("after", [0.0, 0.1, 0.5])
-def test_cancel_takes_less_than_half_a_second(large, after):
+def test_cancel_ends_the_job_and_its_thread(large, after):
     before = threads()
     job = core.start_suggesting(*large)
     time.sleep(after)
     assert not job.poll()[2]
-    start = time.perf_counter()
     job.cancel()
     assert job.poll()[2]
     with pytest.raises(core.OrbifoldError) as caught:
         job.finish()
-    assert time.perf_counter() - start < 0.5
     assert caught.value.status == "ORB_CANCELLED"
     assert wait_for_threads(before) == before
 
 
 def test_progress_cancels_by_returning_false_or_raising(large):
+    before = threads()
     with pytest.raises(core.OrbifoldError) as caught:
         core.suggest_cones(*large, progress=lambda stage, fraction: False)
     assert caught.value.status == "ORB_CANCELLED"
@@ -213,14 +212,13 @@ def test_progress_cancels_by_returning_false_or_raising(large):
 
     with pytest.raises(ZeroDivisionError, match="from progress"):
         core.suggest_cones(*large, progress=progress)
+    assert wait_for_threads(before) == before  # or the next test counts theirs
 
 
 def test_job_that_is_dropped_is_cancelled(large):
     before = threads()
     job = core.start_suggesting(*large)
-    start = time.perf_counter()
     del job
-    assert time.perf_counter() - start < 0.5
     gc.collect()
     assert wait_for_threads(before) == before
 
