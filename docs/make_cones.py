@@ -128,7 +128,7 @@ its mean quasi-conformal error (1 is perfect; where a signature has a star, its 
 counts angles too). *Random*: the best and the median of 200 random triples, really embedded (`442`, `432` and `237`, on a large
 mesh in turn; on disks `*442`, `*432` and `*237` with corners on the border). *BFF*: the spread that the eight automatic cones of
 boundary-first flattening leave, whose angles are arbitrary, so that nothing tiles. Seconds are the processor's, for all
-usual suggestions together.
+usual suggestions together. Not listed: surfaces whose usual signature has no cones (kitten `o`, spread 1.66; three_holes `ooo`, 0.90).
 
 | mesh | vertices | suggestion | cones | predicted | measured | qc | random: best | median | BFF | seconds |
 |---|---|---|---|---|---|---|---|---|---|---|

@@ -10,7 +10,6 @@
 #include "distortion.h"
 #include "picks.h"
 #include "placing.h"
-#include "surface.h"
 #include "topology.h"
 #include "usual.h"
 
@@ -183,17 +182,14 @@ static orb_status measure_plans(orb_study *study, orb_error *error) {
 
 /* --- result ------------------------------------------------------------------------------------------------------ */
 
-static int best_first(const void *a, const void *b) {
-    const orb_plan *x = *(orb_plan *const *)a, *y = *(orb_plan *const *)b;
-    if (x->placed != y->placed)
-        return x->placed ? -1 : 1;
-    return x->placed ? (x->predicted > y->predicted) - (x->predicted < y->predicted) : 0;
+static bool is_better(const orb_plan *a, const orb_plan *b) {
+    return a->placed && (!b->placed || a->predicted < b->predicted);
 }
 
 /* Stable, so that of equally good ones the first in the list comes first. */
 static void sort_plans(orb_study *study) {
     for (int32_t i = 1; i < study->n; i++)
-        for (int32_t j = i; j > 0 && best_first(&study->plans[j], &study->plans[j - 1]) < 0; j--) {
+        for (int32_t j = i; j > 0 && is_better(study->plans[j], study->plans[j - 1]); j--) {
             orb_plan *swap = study->plans[j];
             study->plans[j] = study->plans[j - 1];
             study->plans[j - 1] = swap;
