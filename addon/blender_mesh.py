@@ -261,17 +261,21 @@ def read_uv(mesh: bpy.types.Mesh, name: str = UV_MAP) -> np.ndarray:
     return uv.reshape(-1, 2)
 
 
-def edge_indices(mesh: bpy.types.Mesh, pairs: np.ndarray) -> np.ndarray:
-    """(k,) int64 the edge between each pair of vertices, -1 where there is none. `pairs` (k, 2)."""
+def edge_indices(mesh: bpy.types.Mesh, pairs: np.ndarray, edges: Optional[np.ndarray] = None) -> np.ndarray:
+    """(k,) int64 the edge between each pair of vertices, -1 where there is none. `pairs` (k, 2); `edges`: of
+    `read_edges`, where they are at hand."""
     pairs = np.asarray(pairs, np.int64).reshape(-1, 2)
-    keys = _edge_keys(read_edges(mesh), len(mesh.vertices))
-    wanted = _edge_keys(pairs, len(mesh.vertices))
-    among = np.flatnonzero(np.isin(keys, wanted))
+    edges = read_edges(mesh) if edges is None else edges
+    named = np.zeros(len(mesh.vertices), bool)
+    named[pairs] = True
+    among = np.flatnonzero(named[edges[:, 0]] & named[edges[:, 1]])
     if not len(among):
         return np.full(len(pairs), -1, np.int64)
-    order = among[np.argsort(keys[among], kind="stable")]
-    place = np.minimum(np.searchsorted(keys[order], wanted), len(order) - 1)
-    return np.where(keys[order][place] == wanted, order[place], -1)
+    keys, wanted = _edge_keys(edges[among], len(mesh.vertices)), _edge_keys(pairs, len(mesh.vertices))
+    order = np.argsort(keys, kind="stable")
+    keys = keys[order]
+    place = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+    return np.where(keys[place] == wanted, among[order][place], -1)
 
 
 def _edge_keys(edges: np.ndarray, n_vertices: int) -> np.ndarray:
@@ -287,13 +291,20 @@ def read_seams(mesh: bpy.types.Mesh) -> np.ndarray:
     return seams
 
 
-def mark_seams(mesh: bpy.types.Mesh, pairs: Optional[np.ndarray], among: Optional[np.ndarray] = None) -> None:
+def mark_seams(
+    mesh: bpy.types.Mesh,
+    pairs: Optional[np.ndarray],
+    among: Optional[np.ndarray] = None,
+    edges: Optional[np.ndarray] = None,
+) -> None:
     """Make the edges between these pairs of vertices seams, and take back those of an earlier call, all of them or
-    those between the vertices `among`; the user's own seams stay. None only takes back."""
+    those between the vertices `among`; the user's own seams stay. None only takes back. `edges`: of `read_edges`, where
+    they are at hand."""
+    edges = read_edges(mesh) if edges is None else edges
     seams, kept = read_seams(mesh), np.zeros(len(mesh.edges), bool)
     inside = np.full(len(mesh.vertices), among is None)
     inside[among if among is not None else []] = True
-    treated = inside[read_edges(mesh)].all(1)
+    treated = inside[edges[:, 0]] & inside[edges[:, 1]]
     old = mesh.attributes.get(CUT_ATTRIBUTE)
     if old is not None and (old.domain != "EDGE" or old.data_type != "BOOLEAN"):
         mesh.attributes.remove(old)
@@ -308,7 +319,7 @@ def mark_seams(mesh: bpy.types.Mesh, pairs: Optional[np.ndarray], among: Optiona
         seams &= (path == 0) | (path % 2 == 1) | ~treated
     cut = np.zeros(len(mesh.edges), bool)
     if pairs is not None and len(pairs):
-        found = edge_indices(mesh, pairs)
+        found = edge_indices(mesh, pairs, edges)
         cut[found[found >= 0]] = True
     mesh.edges.foreach_set("use_seam", seams | cut)
     attribute = mesh.attributes.get(CUT_ATTRIBUTE) or mesh.attributes.new(CUT_ATTRIBUTE, "BOOLEAN", "EDGE")

@@ -179,10 +179,12 @@ def _unpacked(text: str) -> dict[str, np.ndarray]:
 PATH_ATTRIBUTE = blender_mesh.PATH_ATTRIBUTE
 
 
-def keep_cut(mesh: bpy.types.Mesh, seams: np.ndarray, numbers: np.ndarray) -> None:
+def keep_cut(
+    mesh: bpy.types.Mesh, seams: np.ndarray, numbers: np.ndarray, edges: Optional[np.ndarray] = None
+) -> None:
     """Write the paths (k,) of the cut's edges, pairs of vertices (k, 2), whose seams are marked or not. In object
-    mode."""
-    found = blender_mesh.edge_indices(mesh, seams)
+    mode. `edges`: of `blender_mesh.read_edges`, where they are at hand."""
+    found = blender_mesh.edge_indices(mesh, seams, edges)
     on_mesh = found >= 0
     theirs = blender_mesh.read_seams(mesh) & ~blender_mesh.read_our_seams(mesh)
     paths = np.zeros(len(mesh.edges), np.int32)

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from typing import Optional
 
 import bpy
+import numpy as np
 from bpy.app.handlers import persistent
 
 from . import arrangement, blender_mesh, core, cut_paths, faces, layouts, overlay, properties, surface
@@ -35,6 +36,7 @@ class _Computing:
     weights: str
     job: core.EmbeddingJob
     arrays: blender_mesh.MeshArrays
+    edges: np.ndarray  # (edges, 2)
     progress: float = 0.0
 
 
@@ -44,7 +46,9 @@ class _Known:
 
     counts: tuple
     arrays: blender_mesh.MeshArrays
+    edges: np.ndarray  # (edges, 2)
     surface: core.Topology
+    prepared: core.PreparedMesh
 
 
 class _State:
@@ -146,8 +150,9 @@ def _start(obj: bpy.types.Object, weights: str) -> None:
             core.start_embedding(
                 *(known.arrays.vertices, known.arrays.triangles, signature),
                 arrangement.in_sequence(picked, known.surface, signature), weights=weights, holes=mesh.orbifold.holes,
+                prepared=known.prepared,
             ),
-            known.arrays,
+            *(known.arrays, known.edges),
         )
     except (core.OrbifoldError, blender_mesh.BlenderMeshError) as error:
         _fail(name, error)
@@ -167,7 +172,10 @@ def _read(obj: bpy.types.Object) -> _Known:
         if mesh.is_editmode:
             obj.update_from_editmode()
         arrays = blender_mesh.read_mesh(mesh)
-        known = _Known(counts, arrays, core.topology_of(arrays.triangles))
+        known = _Known(
+            *(counts, arrays, blender_mesh.read_edges(mesh), core.topology_of(arrays.triangles)),
+            core.prepare(arrays.vertices, arrays.triangles),
+        )
         _State.known = {mesh.name_full: known}  # of one mesh only, for it may be large
     return known
 
@@ -212,8 +220,8 @@ def _write(obj: bpy.types.Object, computing: _Computing, result: core.Result) ->
         layouts.keep_cut_in_edit_mode(mesh, layout.seams, paths)
     else:
         blender_mesh.write_uv(mesh, arrays, layout.uv)
-        blender_mesh.mark_seams(mesh, layout.seams)
-        layouts.keep_cut(mesh, layout.seams, paths)
+        blender_mesh.mark_seams(mesh, layout.seams, edges=computing.edges)
+        layouts.keep_cut(mesh, layout.seams, paths, computing.edges)
     if computing.weights == FAST != _weights_of(mesh):
         mesh.orbifold.unwraps = (mesh.orbifold.unwraps + 1) % 2**30
     else:

@@ -5,7 +5,7 @@
 # usage: suitesparse.sh DIR
 #
 #   DIR/include             cholmod.h, umfpack.h and their companions
-#   DIR/lib/libsuitesparse.a, DIR/lib/blas_lock.o
+#   DIR/lib/libsuitesparse.a, DIR/lib/openblas.o
 #   DIR/licenses            the texts that go along with the code
 #   DIR/flags.mk            SUITESPARSE_CFLAGS and SUITESPARSE_LIBS, relative to $(SUITESPARSE), which is DIR
 #
@@ -27,7 +27,7 @@ say() { echo "suitesparse: $*"; }
 die() { echo "suitesparse: error: $*" >&2; exit 1; }
 
 # What the result depends on besides the sources, which have their checksums.
-stamp_key() { { cat "$here/suitesparse.sh" "$here/suitesparse.sha256" "$here"/*.patch "$here/blas_lock.c"; $cc --version; } | sha256sum; }
+stamp_key() { { cat "$here/suitesparse.sh" "$here/suitesparse.sha256" "$here"/*.patch "$here/openblas.c"; $cc --version; } | sha256sum; }
 
 # One deb-src line for each Debian repository in apt's configuration, whichever syntax it is written in
 # (apt itself reads it).  Before the first apt-get update apt does not know origins; then the paths speak.
@@ -175,19 +175,19 @@ compile() {
     (cd "$work" && xargs -P "$jobs" -L 1 sh -c 'object=$1 source=$2; shift 2; '"$cc $cflags"' "$@" -c "$source" -o "$object"' sh <compilations)
     rm -f "$out/lib/libsuitesparse.a"
     ar rcs "$out/lib/libsuitesparse.a" "$work"/objects/*.o
-    $cc -O2 -fPIC -fvisibility=hidden -pthread -c "$here/blas_lock.c" -o "$out/lib/blas_lock.o"
+    $cc -O2 -fPIC -fvisibility=hidden -pthread -c "$here/openblas.c" -o "$out/lib/openblas.o"
     cp "$work"/suitesparse/SuiteSparse_config/SuiteSparse_config.h "$work"/suitesparse/{AMD/Include/amd,CHOLMOD/Include/cholmod,UMFPACK/Include/umfpack}*.h "$out/include/"
     cp "$work/suitesparse/LICENSE.txt" "$out/licenses/SuiteSparse.txt"
     cp "$work/metis/LICENSE.txt" "$out/licenses/METIS.txt"
     cp /usr/share/doc/libopenblas-serial-dev/copyright "$out/licenses/OpenBLAS.txt" 2>/dev/null || true
 }
 
-# A static, position independent, serial BLAS, with the lock that it lacks; or whatever the linker finds.
+# A static, position independent, serial BLAS, with what it lacks (openblas.c); or whatever the linker finds.
 blas() {
     local file
     for file in /usr/lib/*/openblas-serial/libopenblas.a "$($cc -print-file-name=libopenblas.a)"; do
         case $file in /*) [ -e "$file" ] || continue ;; *) continue ;; esac
-        echo "-Wl,--wrap=blas_memory_alloc,--wrap=blas_memory_free \$(SUITESPARSE)/lib/blas_lock.o $file"
+        echo "-Wl,--wrap=blas_memory_alloc,--wrap=blas_memory_free,--wrap=getenv \$(SUITESPARSE)/lib/openblas.o $file"
         return
     done
     say "no static OpenBLAS (libopenblas-serial-dev): linking -llapack -lblas" >&2

@@ -13,6 +13,7 @@ from .fitting import fitting_signatures
 from .jobs import Job, Progress, wait_for, wait_until_over
 from .meshio import MeshFileError, read_mesh
 from .polygon import Polygon
+from .prepare import PreparedMesh, prepare
 from .result import CHARTS, Result
 from .signatures import (
     Outline,
@@ -48,6 +49,7 @@ __all__ = [
     "Outline",
     "Polygon",
     "Prediction",
+    "PreparedMesh",
     "Progress",
     "Result",
     "Signature",
@@ -65,6 +67,7 @@ __all__ = [
     "library",
     "parse_signature",
     "predict",
+    "prepare",
     "read_mesh",
     "start_embedding",
     "start_suggesting",

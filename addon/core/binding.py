@@ -96,6 +96,7 @@ class Request(Structure):
         ("clamp", c_double),
         ("n_edge_weights", c_int32),
         ("edge_weights", DOUBLES),
+        ("prepared", c_void_p),
         ("progress", Progress),
         ("user", c_void_p),
     ]
@@ -205,6 +206,7 @@ class Suggestion(Structure):
 EMBEDDING = c_void_p  # orb_embedding *
 SUGGESTIONS = c_void_p  # orb_suggestions *
 JOB = c_void_p  # orb_job *
+PREPARED = c_void_p  # orb_prepared *
 
 # name: (result, arguments)
 PROTOTYPES = {
@@ -213,6 +215,8 @@ PROTOTYPES = {
     "orb_signature_read": (c_int, [c_char_p, POINTER(SignatureInfo), INT32S, c_int32, POINTER(Error)]),
     "orb_signature_tile": (c_int, [c_char_p, DOUBLES, BOOLS, c_int32, INT32S, POINTER(Error)]),
     "orb_embed": (c_int, [POINTER(MeshArrays), POINTER(Request), POINTER(EMBEDDING), POINTER(Error)]),
+    "orb_prepare": (c_int, [POINTER(MeshArrays), POINTER(PREPARED), POINTER(Error)]),
+    "orb_prepared_free": (None, [PREPARED]),
     "orb_embedding_free": (None, [EMBEDDING]),
     "orb_embedding_view": (None, [EMBEDDING, POINTER(View)]),
     "orb_embedding_report": (None, [EMBEDDING, POINTER(Report)]),
@@ -359,6 +363,16 @@ class Embedding:
         return positions, mended.value
 
 
+class Prepared:
+    """An orb_prepared, freed with this object, or with the last job that uses it."""
+
+    def __init__(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
+        native = library()
+        self.pointer, record = c_void_p(), Error()
+        check(native.orb_prepare(mesh_arrays(vertices, triangles), self.pointer, record), record)
+        weakref.finalize(self, native.orb_prepared_free, self.pointer)
+
+
 class Suggestions:
     """An orb_suggestions, freed with this object."""
 
@@ -430,14 +444,15 @@ class Job:
     """An orb_job, an embedding's or that of suggestions, after the kind of request. One that is dropped without
     `finish` is cancelled, and its thread cleans up after itself."""
 
-    def __init__(self, vertices: np.ndarray, triangles: np.ndarray, request: Request | SuggestRequest) -> None:
+    def __init__(self, mesh: MeshArrays | None, request: Request | SuggestRequest) -> None:
+        """mesh: None where the request has a prepared one."""
         native = self._native = library()
         if isinstance(request, Request):
             start, self._finish, self._made = native.orb_job_start, native.orb_job_finish, Embedding
         else:
             start, self._finish, self._made = native.orb_job_start_suggest, native.orb_job_finish_suggest, Suggestions
         self._pointer, record = c_void_p(), Error()  # the library copies the arrays before the call returns
-        check(start(mesh_arrays(vertices, triangles), request, self._pointer, record), record)
+        check(start(mesh, request, self._pointer, record), record)
         self._abandon = weakref.finalize(self, Job._cancel_and_finish, native, self._finish, self._pointer)
 
     @staticmethod

@@ -19,6 +19,7 @@ from .arrays import holes_of, mesh_of, picks_of, rows_of_three, unknown
 from .errors import OrbifoldError
 from .jobs import Job, Progress, wait_for
 from .polygon import Polygon, polygon_arrays
+from .prepare import PreparedMesh
 from .result import Result, chart_number, result_of
 from .signatures import geometry_of
 
@@ -43,9 +44,10 @@ def start_embedding(
     chart: str | None = None,
     holes: str = "refuse",
     polygon: Polygon | None = None,
+    prepared: PreparedMesh | None = None,
 ) -> EmbeddingJob:
     """Starts what `embed` does and returns at once. Arguments are those of `embed`; arrays may change afterwards."""
-    points, faces = mesh_of(vertices, triangles)
+    points, faces = mesh_of(vertices, triangles) if prepared is None else (None, None)
     picked, orders = picks_of(cones, orders)
     if (signature is None) == (polygon is None):
         raise OrbifoldError("ORB_BAD_ARGUMENT", "give a signature such as '442', or else a polygon, and not both")
@@ -66,7 +68,10 @@ def start_embedding(
     request = binding.request_of(
         *(signature, picked, orders, treated, native_polygon, edge_weights), weights=kind, clamp=clamp
     )
-    return EmbeddingJob(binding.Job(points, faces, request), len(points), chart)
+    if prepared is None:
+        return EmbeddingJob(binding.Job(binding.mesh_arrays(points, faces), request), len(points), chart)
+    request.prepared = prepared.native.pointer
+    return EmbeddingJob(binding.Job(None, request), prepared.n_vertices, chart)
 
 
 def embed(
@@ -81,6 +86,7 @@ def embed(
     chart: str | None = None,
     holes: str = "refuse",
     polygon: Polygon | None = None,
+    prepared: PreparedMesh | None = None,
 ) -> Result:
     """The certified embedding of a mesh in one piece in an orbifold whose surface it is.
 
@@ -99,10 +105,11 @@ def embed(
                computation, or "mirror": add a * to the signature for each
     polygon    instead of a signature: the boundary of a disk is fixed to it; `cones` are then the vertices that go
                to its corners in turn (none: spread evenly)
+    prepared   what `prepare` made of these vertices and triangles, which then are not read again
 
     Raises OrbifoldError. A cancelled computation raises ORB_CANCELLED, or what `progress` raised, at once.
     """
-    job = start_embedding(vertices, triangles, signature, cones, orders, weights, clamp, chart, holes, polygon)
+    job = start_embedding(vertices, triangles, signature, cones, orders, weights, clamp, chart, holes, polygon, prepared)
     return wait_for(job, progress)
 
 

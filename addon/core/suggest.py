@@ -73,7 +73,7 @@ def start_suggesting(
     weights = None if keep_away is None else _weights_of(keep_away, len(points))
     way, plane = _symmetry_of(symmetry)
     request = binding.suggest_request_of(names, bool(flat), kept, weights, holes_of(holes), way, plane)
-    return SuggestionJob(binding.Job(points, faces, request))
+    return SuggestionJob(binding.Job(binding.mesh_arrays(points, faces), request))
 
 
 def suggest_cones(

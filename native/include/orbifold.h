@@ -110,6 +110,13 @@ typedef struct orb_polygon {
 /* Called now and then from the thread that computes; return false to cancel. `fraction` in [0, 1] never falls. */
 typedef bool (*orb_progress)(const char *stage, double fraction, void *user);
 
+/* What all embeddings of one mesh share: its half-edges, cotangents, the ordering and the symbolic factor. For many
+ * requests on one mesh, as while a cone is moved. Several threads may use it at once, and it may be freed while jobs
+ * still do. Errors: those of the mesh. */
+typedef struct orb_prepared orb_prepared;
+ORB_API orb_status orb_prepare(const orb_mesh_arrays *mesh, orb_prepared **prepared, orb_error *error);
+ORB_API void orb_prepared_free(orb_prepared *prepared);
+
 typedef struct orb_request {
     const char *signature; /* Conway's notation: "442", "22(12)", "*632", "4*2", "**", "22x", "ooo", "3*22" */
     int32_t n_cones;
@@ -119,11 +126,12 @@ typedef struct orb_request {
     orb_holes holes;
     const orb_polygon *polygon; /* not NULL: a fixed boundary, and no signature */
     orb_weights weights;
-    double clamp;               /* least cotangent weight, > 0 */
-    int32_t n_edge_weights;     /* for ORB_WEIGHTS_GIVEN: one row for each edge of the mesh, in any sequence */
-    const double *edge_weights; /* [n_edge_weights*3] rows i, j, w_ij > 0 */
-    orb_progress progress;      /* may be NULL */
-    void *user;                 /* its last argument */
+    double clamp;                 /* least cotangent weight, > 0 */
+    int32_t n_edge_weights;       /* for ORB_WEIGHTS_GIVEN: one row for each edge of the mesh, in any sequence */
+    const double *edge_weights;   /* [n_edge_weights*3] rows i, j, w_ij > 0 */
+    const orb_prepared *prepared; /* of the mesh, which then may be NULL and is not looked at; or NULL */
+    orb_progress progress;        /* may be NULL */
+    void *user;                   /* its last argument */
 } orb_request;
 
 ORB_API orb_request orb_request_default(void); /* conformal weights, none below 0.01; all else zero */

@@ -9,6 +9,7 @@
 #include "distortion.h"
 #include "embedding.h"
 #include "polygon.h"
+#include "prepared.h"
 #include "solve.h"
 #include "weights.h"
 
@@ -29,8 +30,9 @@ static orb_status read_input(orb_workshop *work, const orb_mesh_arrays *arrays, 
         return error_memory(error);
     if (work->request->weights == ORB_WEIGHTS_GIVEN)
         return surface_given_weights(embedding->surface, work->request, embedding->weights, error);
-    return weights_compute(embedding->mesh, work->request, embedding->weights, &embedding->report.clamped_weights,
-                           error);
+    const orb_prepared *prepared = embedding->surface->prepared;
+    return weights_compute(embedding->mesh, work->request, prepared ? &prepared->cotangents : NULL, embedding->weights,
+                           &embedding->report.clamped_weights, error);
 }
 
 /* Two cones or corners of a lune are antipodal: an edge between them would be no one geodesic. */
@@ -165,7 +167,9 @@ static int32_t count_needless(const orb_embedding *embedding, uint8_t *needed) {
         if (t - pieces == 1)
             continue;
         /* A triangle that was turned over with its pieces is as good. */
-        if (fabs(certificate_sine(embedding->tile->geometry, corner)) > flat)
+        double sine;
+        certificate_corner(embedding->tile->geometry, corner, &sine);
+        if (fabs(sine) > flat)
             continue;
         for (int32_t h = 3 * p; h < 3 * p + 3; h++)
             needed[plain->edge[h]] = 1;
@@ -231,7 +235,7 @@ orb_status orb_embed(const orb_mesh_arrays *mesh, const orb_request *request, or
     if (!result)
         return error_set(error, ORB_BAD_ARGUMENT, "orb_embed needs a place for its result");
     *result = NULL;
-    if (!mesh || !request || request->n_cones < 0 || (request->n_cones > 0 && !request->cones))
+    if (!request || (!mesh && !request->prepared) || request->n_cones < 0 || (request->n_cones > 0 && !request->cones))
         return error_set(error, ORB_BAD_ARGUMENT, "orb_embed needs a mesh, a request and its cones");
     orb_status status = embed_once(mesh, request, NULL, result, error);
     if (status == ORB_OK)

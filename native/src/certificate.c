@@ -11,31 +11,27 @@ static const double pi = 3.14159265358979323846;
 static const double seam_tolerance = 1e-8;  /* of the edge, or the median edge */
 static const double angle_tolerance = 1e-7; /* radians */
 static const double area_tolerance = 1e-7;  /* relative */
+static const double plain_sine = 0.5;       /* so far from 0 that its sign, too, is far from rounding */
 
-int certificate_corner(const orb_geometry *geometry, const orb_point corners[3], int *sign) {
-    double best = -1;
+/* The sine of a triangle's angle at its corner k. */
+static double sine_at(const orb_geometry *geometry, const orb_point corners[3], int k) {
+    double complex s = geometry_toward(geometry, corners[k], corners[(k + 1) % 3]);
+    double complex t = geometry_toward(geometry, corners[k], corners[(k + 2) % 3]);
+    double size = modulus(s) * modulus(t);
+    return size > 0 ? cimag(conj(s) * t) / size : 0;
+}
+
+int certificate_corner(const orb_geometry *geometry, const orb_point corners[3], double *sine) {
     int corner = 0;
-    *sign = 0;
-    for (int k = 0; k < 3; k++) {
-        double complex s = geometry_toward(geometry, corners[k], corners[(k + 1) % 3]);
-        double complex t = geometry_toward(geometry, corners[k], corners[(k + 2) % 3]);
-        double sine = cimag(conj(s) * t), size = cabs(s) * cabs(t);
-        double score = size > 0 ? fabs(sine) / size : 0;
-        if (score > best) {
-            best = score;
+    *sine = sine_at(geometry, corners, 0);
+    for (int k = 1; k < 3 && !(fabs(*sine) > plain_sine); k++) {
+        double other = sine_at(geometry, corners, k);
+        if (fabs(other) > fabs(*sine)) {
+            *sine = other;
             corner = k;
-            *sign = (sine > 0) - (sine < 0);
         }
     }
     return corner;
-}
-
-double certificate_sine(const orb_geometry *geometry, const orb_point corners[3]) {
-    int sign, k = certificate_corner(geometry, corners, &sign);
-    double complex s = geometry_toward(geometry, corners[k], corners[(k + 1) % 3]);
-    double complex t = geometry_toward(geometry, corners[k], corners[(k + 2) % 3]);
-    double size = cabs(s) * cabs(t);
-    return size > 0 ? cimag(conj(s) * t) / size : 0;
 }
 
 static void triangle_corners(const orb_embedding *embedding, int32_t t, orb_point corners[3]) {
@@ -45,10 +41,10 @@ static void triangle_corners(const orb_embedding *embedding, int32_t t, orb_poin
 
 static bool is_flipped(const orb_embedding *embedding, int32_t t) {
     orb_point corners[3];
-    int sign;
+    double sine;
     triangle_corners(embedding, t, corners);
-    certificate_corner(embedding->tile->geometry, corners, &sign);
-    return sign <= 0;
+    certificate_corner(embedding->tile->geometry, corners, &sine);
+    return !(sine > 0);
 }
 
 int64_t certificate_find_flipped(const orb_embedding *embedding, bool *flipped) {
@@ -86,38 +82,35 @@ static orb_status check_orientation(orb_embedding *embedding, orb_error *error) 
                               (long long)flipped, flipped == 1 ? "triangle is" : "triangles are", (int)named[0]);
 }
 
-/* The length of an edge as the triangles on both of its sides have it. */
-static void edge_lengths(const orb_embedding *embedding, int32_t e, double side[2]) {
-    const orb_mesh *mesh = embedding->mesh;
+/* An edge's length as the triangle of this half-edge has it. */
+static double length_in_triangle(const orb_embedding *embedding, int32_t h) {
     const int32_t *triangles = embedding->copies->triangles;
-    int32_t h = mesh->edge_halfedge[e], twin = mesh->twin[h] < 0 ? h : mesh->twin[h];
-    const int32_t ends[2][2] = {{triangles[h], triangles[halfedge_next(h)]},
-                                {triangles[halfedge_next(twin)], triangles[twin]}};
-    for (int k = 0; k < 2; k++)
-        side[k] =
-            geometry_distance(embedding->tile->geometry, embedding->placed[ends[k][0]], embedding->placed[ends[k][1]]);
+    return geometry_distance(embedding->tile->geometry, embedding->placed[triangles[h]],
+                             embedding->placed[triangles[halfedge_next(h)]]);
 }
 
-/* Both copies of every edge have one length, relative to the edge itself or the median one, whichever is longer. */
+/* Both copies of every seam edge have one length, relative to the edge itself or the median one, whichever is longer.
+ * Elsewhere both are the same two points. */
 static orb_status check_seams(orb_embedding *embedding, orb_error *error) {
     const orb_mesh *mesh = embedding->mesh;
-    double *lengths = malloc(((size_t)mesh->n_edges + 1) * sizeof *lengths), side[2], gap = 0;
+    double *lengths = malloc(((size_t)mesh->n_edges + 1) * sizeof *lengths), gap = 0;
     if (!lengths)
         return error_memory(error);
-    for (int32_t e = 0; e < mesh->n_edges; e++) {
-        edge_lengths(embedding, e, side);
-        lengths[e] = side[0];
-    }
+    for (int32_t e = 0; e < mesh->n_edges; e++)
+        lengths[e] = length_in_triangle(embedding, mesh->edge_halfedge[e]);
     double median = select_kth(lengths, mesh->n_edges, mesh->n_edges / 2);
     free(lengths);
     int32_t worst[2] = {0, 0};
     for (int32_t e = 0; e < mesh->n_edges; e++) {
-        edge_lengths(embedding, e, side);
-        double difference = fabs(side[0] - side[1]) / fmax(median, side[0]);
+        int32_t h = mesh->edge_halfedge[e];
+        if (!embedding_is_seam(embedding, e))
+            continue;
+        double side = length_in_triangle(embedding, h), other = length_in_triangle(embedding, mesh->twin[h]);
+        double difference = fabs(side - other) / fmax(median, side);
         if (difference > gap || difference != difference) {
             gap = difference;
-            worst[0] = halfedge_from(mesh, mesh->edge_halfedge[e]);
-            worst[1] = halfedge_to(mesh, mesh->edge_halfedge[e]);
+            worst[0] = halfedge_from(mesh, h);
+            worst[1] = halfedge_to(mesh, h);
         }
     }
     embedding->report.seam_residual = gap;

@@ -15,10 +15,8 @@ orb_status certificate_check(orb_embedding *embedding, orb_error *error);
 /* Which triangles are not positively oriented, flipped[mesh->n_triangles]; returns how many. */
 int64_t certificate_find_flipped(const orb_embedding *embedding, bool *flipped);
 
-/* The corner of a geodesic triangle whose edges are most nearly orthogonal, and the sign of the orientation there,
- * where it has the least rounding error. */
-int certificate_corner(const orb_geometry *geometry, const orb_point corners[3], int *sign);
-/* The sine of the angle there. */
-double certificate_sine(const orb_geometry *geometry, const orb_point corners[3]);
+/* The corner of a geodesic triangle whose edges are most nearly orthogonal, or one that is good enough, and the sine of
+ * its angle. The triangle's orientation, its sign, has the least rounding error there. */
+int certificate_corner(const orb_geometry *geometry, const orb_point corners[3], double *sine);
 
 #endif

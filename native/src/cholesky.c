@@ -21,6 +21,8 @@ typedef struct interface {
     int (*solve2)(int, cholmod_factor *, cholmod_dense *, cholmod_sparse *, cholmod_dense **, cholmod_sparse **,
                   cholmod_dense **, cholmod_dense **, cholmod_common *);
     cholmod_factor *(*analyze)(cholmod_sparse *, void *, cholmod_common *);
+    cholmod_factor *(*copy_factor)(cholmod_factor *, cholmod_common *);
+    cholmod_sparse *(*copy_sparse)(cholmod_sparse *, cholmod_common *);
     int (*amd)(cholmod_sparse *, void *, cholmod_common *);
     int (*metis)(cholmod_sparse *, void *, cholmod_common *);
     size_t index_size;
@@ -47,11 +49,11 @@ static int metis_wide(cholmod_sparse *matrix, void *order, cholmod_common *commo
 
 static const interface interfaces[2] = {
     {cholmod_start, cholmod_finish, cholmod_allocate_sparse, cholmod_free_sparse, cholmod_free_dense,
-     cholmod_free_factor, cholmod_ensure_dense, cholmod_factorize, cholmod_solve2, analyze_narrow, amd_narrow,
-     metis_narrow, sizeof(int32_t)},
+     cholmod_free_factor, cholmod_ensure_dense, cholmod_factorize, cholmod_solve2, analyze_narrow, cholmod_copy_factor,
+     cholmod_copy_sparse, amd_narrow, metis_narrow, sizeof(int32_t)},
     {cholmod_l_start, cholmod_l_finish, cholmod_l_allocate_sparse, cholmod_l_free_sparse, cholmod_l_free_dense,
-     cholmod_l_free_factor, cholmod_l_ensure_dense, cholmod_l_factorize, cholmod_l_solve2, analyze_wide, amd_wide,
-     metis_wide, sizeof(SuiteSparse_long)},
+     cholmod_l_free_factor, cholmod_l_ensure_dense, cholmod_l_factorize, cholmod_l_solve2, analyze_wide,
+     cholmod_l_copy_factor, cholmod_l_copy_sparse, amd_wide, metis_wide, sizeof(SuiteSparse_long)},
 };
 
 struct orb_cholesky {
@@ -177,6 +179,29 @@ orb_status cholesky_analyze_wide(const orb_pattern *pattern, const int32_t *perm
     bool too_large = false;
     *result = NULL;
     return analyze_with(&interfaces[1], pattern, permutation, is_complex, result, &too_large, error);
+}
+
+orb_status cholesky_copy(const orb_cholesky *analysis, orb_cholesky **result, orb_error *error) {
+    const interface *call = analysis->call;
+    *result = NULL;
+    orb_cholesky *cholesky = calloc(1, sizeof *cholesky);
+    if (!cholesky)
+        return error_memory(error);
+    cholesky->call = call;
+    cholesky->is_complex = analysis->is_complex;
+    start(call, &cholesky->common);
+    cholesky->common.supernodal = CHOLMOD_SUPERNODAL;
+    cholesky->common.lnz = analysis->common.lnz;
+    cholesky->matrix = call->copy_sparse(analysis->matrix, &cholesky->common);
+    if (cholesky->matrix) /* each call sets the status anew */
+        cholesky->factor = call->copy_factor(analysis->factor, &cholesky->common);
+    if (!cholesky->matrix || !cholesky->factor) {
+        orb_status status = translate(&cholesky->common, error);
+        cholesky_free(cholesky);
+        return status;
+    }
+    *result = cholesky;
+    return ORB_OK;
 }
 
 orb_status cholesky_factor(orb_cholesky *cholesky, const double *values, bool *positive, orb_error *error) {

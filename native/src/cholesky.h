@@ -23,6 +23,9 @@ orb_status cholesky_analyze(const orb_pattern *pattern, const int32_t *permutati
 orb_status cholesky_analyze_wide(const orb_pattern *pattern, const int32_t *permutation, bool is_complex,
                                  orb_cholesky **cholesky, orb_error *error);
 
+/* Another one with the same analysis, to be factored by itself. */
+orb_status cholesky_copy(const orb_cholesky *analysis, orb_cholesky **cholesky, orb_error *error);
+
 /* Numerical factorisation of values[column[n]] (complex: interleaved, twice as many doubles). A matrix that is not
  * positive definite is no error: *positive says so, and the factor cannot be used. */
 orb_status cholesky_factor(orb_cholesky *cholesky, const double *values, bool *positive, orb_error *error);

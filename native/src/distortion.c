@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "certificate.h"
+#include "select.h"
 #include "triangle.h"
 #include "vector3.h"
 
@@ -35,7 +36,8 @@ static affine triangle_map(const orb_embedding *embedding, double scale, int32_t
     orb_point p[3];
     for (int c = 0; c < 3; c++)
         p[c] = embedding->placed[embedding->copies->triangles[3 * t + c]];
-    int sign, c = certificate_corner(geometry, p, &sign), next = (c + 1) % 3, last = (c + 2) % 3;
+    double sine;
+    int c = certificate_corner(geometry, p, &sine), next = (c + 1) % 3, last = (c + 2) % 3;
     double unit = scale / shape.scale, area = shape.double_area / 2, length = shape.length[c];
     double along = -vector_dot(shape.edge[c], shape.edge[last]) / length;
     double complex from[2] = {unit * length, unit * CMPLX(along, 2 * area / length)};
@@ -62,29 +64,9 @@ void distortion_covariance(const orb_embedding *embedding, double covariance[3])
     }
 }
 
-typedef struct sample {
-    double value, area;
-} sample;
-
-static int by_value(const void *a, const void *b) {
-    double x = ((const sample *)a)->value, y = ((const sample *)b)->value;
-    return (x > y) - (x < y);
-}
-
-static double weighted_median(sample *samples, int32_t n, double total) {
-    qsort(samples, (size_t)n, sizeof *samples, by_value);
-    double below = 0;
-    for (int32_t i = 0; i < n; i++) {
-        below += samples[i].area;
-        if (2 * below >= total)
-            return samples[i].value;
-    }
-    return n > 0 ? samples[n - 1].value : 1;
-}
-
 orb_status distortion_measure(orb_embedding *embedding, orb_error *error) {
     int32_t m = embedding->mesh->n_triangles, used = 0;
-    sample *conformal = malloc(((size_t)m + 1) * sizeof *conformal);
+    select_item *conformal = malloc(((size_t)m + 1) * sizeof *conformal);
     if (!conformal)
         return error_memory(error);
     double unit = unit_scale(embedding->mesh);
@@ -93,7 +75,7 @@ orb_status distortion_measure(orb_embedding *embedding, orb_error *error) {
         affine map = triangle_map(embedding, unit, t);
         if (!(map.area > 0))
             continue;
-        double large = cabs(map.a) + cabs(map.b), small = map.determinant / large;
+        double large = modulus(map.a) + modulus(map.b), small = map.determinant / large;
         double ratio = fmax(1, large / small), scale = log(map.tile_area / map.area);
         area += map.area;
         tile_area += map.tile_area;
@@ -103,13 +85,13 @@ orb_status distortion_measure(orb_embedding *embedding, orb_error *error) {
         log_square += map.area * scale * scale;
         stretch += map.area * (large * large + small * small);
         squeeze += map.area * (1 / (large * large) + 1 / (small * small));
-        conformal[used++] = (sample){ratio, map.area};
+        conformal[used++] = (select_item){ratio, map.area};
     }
     orb_report *report = &embedding->report;
     if (area > 0) {
         double relative = tile_area / area;
         report->quasi_conformal_mean = mean / area;
-        report->quasi_conformal_median = weighted_median(conformal, used, area);
+        report->quasi_conformal_median = select_weighted(conformal, used, area / 2);
         report->quasi_conformal_max = worst;
         report->log_area_std = sqrt(fmax(0, log_square / area - pow(log_mean / area, 2)));
         report->symmetric_dirichlet = (stretch / relative + squeeze * relative) / (4 * area);
@@ -125,7 +107,7 @@ double distortion_spread(const orb_embedding *embedding) {
         const affine map = triangle_map(embedding, unit, t);
         if (!(map.area > 0))
             continue;
-        const double large = cabs(map.a) + cabs(map.b), logs[2] = {log(large), log(map.determinant / large)};
+        const double large = modulus(map.a) + modulus(map.b), logs[2] = {log(large), log(map.determinant / large)};
         area += map.area;
         for (int k = 0; k < 2; k++) {
             mean += map.area * logs[k] / 2;

@@ -22,14 +22,18 @@ void orb_embedding_free(orb_embedding *embedding) {
     free(embedding);
 }
 
-/* Edges inside whose two triangles lie at different copies of an end. */
+bool embedding_is_seam(const orb_embedding *embedding, int32_t e) {
+    const int32_t *triangles = embedding->copies->triangles;
+    int32_t h = embedding->mesh->edge_halfedge[e], twin = embedding->mesh->twin[h];
+    return twin >= 0 &&
+           (triangles[h] != triangles[halfedge_next(twin)] || triangles[halfedge_next(h)] != triangles[twin]);
+}
+
 static void find_seams(orb_embedding *embedding) {
     const orb_mesh *mesh = embedding->mesh;
-    const int32_t *triangles = embedding->copies->triangles;
     for (int32_t e = 0; e < mesh->n_edges; e++) {
-        int32_t h = mesh->edge_halfedge[e], twin = mesh->twin[h];
-        if (twin < 0 ||
-            (triangles[h] == triangles[halfedge_next(twin)] && triangles[halfedge_next(h)] == triangles[twin]))
+        int32_t h = mesh->edge_halfedge[e];
+        if (!embedding_is_seam(embedding, e))
             continue;
         int32_t *seam = embedding->seams + 2 * (size_t)embedding->n_seams++;
         seam[0] = halfedge_from(mesh, h);

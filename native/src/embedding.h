@@ -25,6 +25,9 @@ struct orb_embedding {
     orb_report report;
 };
 
+/* An edge inside whose two triangles lie at different copies of an end. */
+bool embedding_is_seam(const orb_embedding *embedding, int32_t edge);
+
 /* Fills what the view and the report still lack once positions are final: coordinates, seams, rows of weights, the
  * mesh's numbers, and the flips that are left when UVs are rounded to float. */
 orb_status embedding_finish(orb_embedding *embedding, orb_error *error);

@@ -74,7 +74,7 @@ double complex geometry_toward(const orb_geometry *geometry, orb_point p, orb_po
 static double atan_ratio(const orb_geometry *geometry, double r) { return r > 0 ? geometry->atan(r) / r : 1; }
 
 double geometry_distance(const orb_geometry *geometry, orb_point p, orb_point q) {
-    return 2 * geometry->atan(cabs(geometry_toward(geometry, p, q)));
+    return 2 * geometry->atan(modulus(geometry_toward(geometry, p, q)));
 }
 
 bool geometry_is_antipodal(const orb_geometry *geometry, orb_point p, orb_point q) {
@@ -83,20 +83,17 @@ bool geometry_is_antipodal(const orb_geometry *geometry, orb_point p, orb_point 
 
 double complex geometry_log(const orb_geometry *geometry, orb_point p, orb_point q) {
     double complex t = geometry_toward(geometry, p, q);
-    return 2 * atan_ratio(geometry, cabs(t)) * t;
+    return 2 * atan_ratio(geometry, modulus(t)) * t;
 }
 
 orb_point geometry_exp(const orb_geometry *geometry, orb_point p, double complex v) {
-    double length = cabs(v);
+    double length = modulus(v);
     double complex t = length > 0 ? geometry->tan(length / 2) / length * v : 0;
     double complex step = t * conformal_factor(geometry, p) / (1 - geometry->K * conj(p.z) * t);
     dd re = dd_add((dd){creal(p.z), creal(p.low)}, dd_of(creal(step)));
     dd im = dd_add((dd){cimag(p.z), cimag(p.low)}, dd_of(cimag(step)));
     return narrow((ddc){re, im});
 }
-
-/* |a| without hypot's care for the ends of the exponent range, which a bounded chart does not meet. */
-static double modulus(double complex a) { return sqrt(creal(a) * creal(a) + cimag(a) * cimag(a)); }
 
 orb_edge_terms geometry_edge(const orb_geometry *geometry, orb_point p, orb_point q) {
     /* toward p -> q is difference / at_p, and q -> p is -difference / at_q. With r = tan_K(d / 2):

@@ -15,6 +15,7 @@
 #define ORB_GEOMETRY_H
 
 #include <complex.h>
+#include <math.h>
 #include <stdbool.h>
 
 #include "orbifold.h"
@@ -51,6 +52,9 @@ bool geometry_any_start(const orb_geometry *geometry);
 bool geometry_has_translations(const orb_geometry *geometry);
 /* The longest step of a vertex that the minimiser may try; infinite where the energy is convex. */
 double geometry_longest_step(const orb_geometry *geometry);
+
+/* |a| without hypot's care for the ends of the exponent range, which a bounded chart does not meet. */
+static inline double modulus(double complex a) { return sqrt(creal(a) * creal(a) + cimag(a) * cimag(a)); }
 
 /* --- points --- */
 orb_point point_of(double complex z);

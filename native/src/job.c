@@ -6,6 +6,7 @@
  * to go on, which inside a long factorisation may take seconds. */
 #include "error.h"
 #include "orbifold_cones.h"
+#include "prepared.h"
 
 #include <pthread.h>
 #include <signal.h>
@@ -19,7 +20,8 @@ struct orb_job {
     pthread_t thread;
     /* Read by the thread only, after the start. */
     orb_mesh_arrays mesh;
-    bool suggests; /* which of the two requests it is */
+    orb_prepared *prepared; /* instead of the mesh, or NULL */
+    bool suggests;          /* which of the two requests it is */
     orb_request request;
     orb_suggest_request suggest;
     orb_polygon polygon;
@@ -55,6 +57,7 @@ static void *job_copy(orb_job *job, const void *source, int64_t count, size_t si
 static void job_free(orb_job *job) {
     if (!job)
         return;
+    orb_prepared_free(job->prepared);
     orb_embedding_free(job->embedding);
     orb_suggestions_free(job->suggestions);
     for (int32_t k = 0; k < job->n_copies; k++)
@@ -106,11 +109,11 @@ static void *job_run(void *user) {
     return NULL;
 }
 
-/* A job with a copy of the mesh; NULL when memory runs out. */
+/* A job with a copy of the mesh, if there is one; NULL when memory runs out. */
 static orb_job *job_create(const orb_mesh_arrays *mesh) {
     orb_job *job = calloc(1, sizeof *job);
-    if (!job)
-        return NULL;
+    if (!job || !mesh)
+        return job;
     bool fine = true;
     job->mesh = *mesh;
     job->mesh.vertices = job_copy(job, mesh->vertices, 3 * (int64_t)mesh->n_vertices, sizeof(double), &fine);
@@ -125,6 +128,7 @@ static bool take_request(orb_job *job, const orb_request *request) {
     bool fine = true;
     orb_request *own = &job->request;
     *own = *request;
+    own->prepared = job->prepared = prepared_hold(request->prepared);
     if (request->signature)
         own->signature = job_copy(job, request->signature, (int64_t)strlen(request->signature) + 1, 1, &fine);
     own->cones = job_copy(job, request->cones, request->n_cones, sizeof(int32_t), &fine);
@@ -229,9 +233,9 @@ static orb_status job_start(orb_job *made, orb_job **job, orb_error *error) {
 orb_status orb_job_start(const orb_mesh_arrays *mesh, const orb_request *request, orb_job **job, orb_error *error) {
     if (job)
         *job = NULL;
-    if (!mesh || !request || !job)
+    if (!request || (!mesh && !request->prepared) || !job)
         return error_set(error, ORB_BAD_ARGUMENT, "orb_job_start needs a mesh, a request and a place for the job");
-    orb_job *made = job_create(mesh);
+    orb_job *made = job_create(request->prepared ? NULL : mesh);
     if (made && take_request(made, request))
         return job_start(made, job, error);
     job_free(made);

@@ -332,6 +332,32 @@ done:
     return status;
 }
 
+static void *duplicate(const void *array, int64_t count, size_t size, bool *fine) {
+    void *copy = malloc((size_t)count * size + 1);
+    *fine = *fine && copy;
+    return copy ? memcpy(copy, array, (size_t)count * size) : NULL;
+}
+
+orb_status mesh_copy(const orb_mesh *mesh, orb_mesh **result, orb_error *error) {
+    const int64_t n = mesh->n_vertices, m3 = 3 * (int64_t)mesh->n_triangles;
+    bool fine = true;
+    orb_mesh *copy = duplicate(mesh, 1, sizeof *mesh, &fine);
+    *result = copy;
+    if (!copy)
+        return error_memory(error);
+    copy->vertices = duplicate(mesh->vertices, 3 * n, sizeof *copy->vertices, &fine);
+    copy->triangles = duplicate(mesh->triangles, m3, sizeof *copy->triangles, &fine);
+    copy->twin = duplicate(mesh->twin, m3, sizeof *copy->twin, &fine);
+    copy->edge = duplicate(mesh->edge, m3, sizeof *copy->edge, &fine);
+    copy->edge_halfedge = duplicate(mesh->edge_halfedge, mesh->n_edges, sizeof *copy->edge_halfedge, &fine);
+    copy->vertex_halfedge = duplicate(mesh->vertex_halfedge, n, sizeof *copy->vertex_halfedge, &fine);
+    if (fine)
+        return ORB_OK;
+    mesh_free(copy);
+    *result = NULL;
+    return error_memory(error);
+}
+
 void mesh_free(orb_mesh *mesh) {
     if (!mesh)
         return;

@@ -63,6 +63,7 @@ orb_status mesh_check_arrays(const orb_mesh_arrays *arrays, orb_error *error);
  * ORB_INCONSISTENT_ORIENTATION (of a surface that could be oriented), ORB_NON_MANIFOLD_VERTEX. On failure *mesh is
  * NULL and nothing is left allocated. */
 orb_status mesh_create(const orb_mesh_arrays *arrays, orb_mesh **mesh, orb_error *error);
+orb_status mesh_copy(const orb_mesh *mesh, orb_mesh **copy, orb_error *error);
 void mesh_free(orb_mesh *mesh);
 
 /* One component, else ORB_SEVERAL_COMPONENTS. */

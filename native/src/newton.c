@@ -72,12 +72,17 @@ static orb_status minimiser_allocate(minimiser *work, orb_error *error) {
     return lbfgs_create(work->problem->n_vertices, &work->memory, error);
 }
 
-static orb_status analyze(minimiser *work, const int32_t *order, orb_error *error) {
+static orb_status analyze(minimiser *work, int32_t n_order, const int32_t *order, orb_error *error) {
     double start = monitor_clock();
+    if (work->system->analysis) {
+        orb_status status = cholesky_copy(work->system->analysis, &work->cholesky, error);
+        work->minimum->seconds_analyze += monitor_clock() - start;
+        return status;
+    }
     int32_t *rows = malloc(((size_t)work->system->unknown[work->system->n_free] + 1) * sizeof *rows);
     if (!rows)
         return error_memory(error);
-    system_spread_order(work->system, order, rows);
+    system_spread_order(work->system, n_order, order, rows);
     orb_status status =
         cholesky_analyze(&work->system->pattern, rows, work->system->is_complex, &work->cholesky, error);
     free(rows);
@@ -186,7 +191,7 @@ static bool is_noise(const minimiser *work, double slope) { return -slope < ener
 static void line_search(minimiser *work, double slope, double *taken) {
     double longest = 0, before = work->energy;
     for (int32_t v = 0; v < work->problem->n_vertices; v++)
-        longest = fmax(longest, cabs(work->step[v]));
+        longest = fmax(longest, modulus(work->step[v]));
     double cap = geometry_longest_step(work->problem->geometry), scale = longest > cap ? cap / longest : 1;
     bool noise = is_noise(work, slope);
     double complex *swap = work->old_gradient;
@@ -271,7 +276,7 @@ static orb_status error_not_converged(const minimiser *work, orb_error *error) {
     int32_t worst = 0;
     double most = 0;
     for (int32_t v = 0; v < work->problem->n_vertices; v++) {
-        double share = work->scale[v] > 0 ? cabs(work->gradient[v]) / work->scale[v] : 0;
+        double share = work->scale[v] > 0 ? modulus(work->gradient[v]) / work->scale[v] : 0;
         if (share > most) {
             most = share;
             worst = v;
@@ -288,7 +293,8 @@ static orb_status error_not_converged(const minimiser *work, orb_error *error) {
 static orb_status error_bad_start(const minimiser *work, orb_error *error) {
     orb_found found = {0};
     for (int32_t v = 0; v < work->problem->n_vertices; v++)
-        if (work->problem->freedom[v] && !(cabs(work->gradient[v]) <= 2 * work->scale[v] && isfinite(work->scale[v])))
+        if (work->problem->freedom[v] &&
+            !(modulus(work->gradient[v]) <= 2 * work->scale[v] && isfinite(work->scale[v])))
             found_add(&found, v);
     return error_set_elements(error, ORB_NOT_CONVERGED, ORB_VERTEX, found.elements, found.entries, found.found,
                               "the first embedding is not finite at %lld %s, first %d: take lower orders, other "
@@ -297,8 +303,8 @@ static orb_status error_bad_start(const minimiser *work, orb_error *error) {
                               found.found ? (int)found.elements[0] : -1);
 }
 
-orb_status newton_minimise(const orb_problem *problem, orb_system *system, const int32_t *order, orb_point *position,
-                           orb_minimum *minimum, orb_monitor *monitor, orb_error *error) {
+orb_status newton_minimise(const orb_problem *problem, orb_system *system, int32_t n_order, const int32_t *order,
+                           orb_point *position, orb_minimum *minimum, orb_monitor *monitor, orb_error *error) {
     *minimum = (orb_minimum){0};
     minimiser work = {.problem = problem, .system = system, .minimum = minimum};
     orb_status status = minimiser_allocate(&work, error);
@@ -309,7 +315,7 @@ orb_status newton_minimise(const orb_problem *problem, orb_system *system, const
     if (status != ORB_OK)
         goto done;
     memcpy(work.position, position, bytes);
-    status = analyze(&work, order, error);
+    status = analyze(&work, n_order, order, error);
     if (status != ORB_OK)
         goto done;
     evaluate(&work);

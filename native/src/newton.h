@@ -20,10 +20,10 @@ typedef struct orb_minimum {
     double seconds_assemble, seconds_analyze, seconds_factor, seconds_solve;
 } orb_minimum;
 
-/* `position` [n_vertices] holds the start and receives the minimiser; fixed vertices stay. `order` [system->n_free]
- * is an ordering of the system's blocks. On failure `position` is as it was.
+/* `position` [n_vertices] holds the start and receives the minimiser; fixed vertices stay. `order` [n_order]
+ * is a fill-reducing ordering of at least the vertices that have rows. On failure `position` is as it was.
  * Errors: ORB_NOT_CONVERGED, ORB_CANCELLED, and the linear solver's. */
-orb_status newton_minimise(const orb_problem *problem, orb_system *system, const int32_t *order, orb_point *position,
-                           orb_minimum *minimum, orb_monitor *monitor, orb_error *error);
+orb_status newton_minimise(const orb_problem *problem, orb_system *system, int32_t n_order, const int32_t *order,
+                           orb_point *position, orb_minimum *minimum, orb_monitor *monitor, orb_error *error);
 
 #endif

@@ -3,6 +3,7 @@
 
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct entry {
     int32_t row, pair;
@@ -55,6 +56,19 @@ done:
     free(start);
     free(entries);
     return status;
+}
+
+orb_status pattern_copy(const orb_pattern *pattern, orb_pattern *copy, orb_error *error) {
+    size_t columns = (size_t)pattern->n + 1, entries = (size_t)pattern->column[pattern->n];
+    *copy =
+        (orb_pattern){pattern->n, malloc(columns * sizeof *copy->column), malloc((entries + 1) * sizeof *copy->row)};
+    if (!copy->column || !copy->row) {
+        pattern_clear(copy);
+        return error_memory(error);
+    }
+    memcpy(copy->column, pattern->column, columns * sizeof *copy->column);
+    memcpy(copy->row, pattern->row, entries * sizeof *copy->row);
+    return ORB_OK;
 }
 
 void pattern_clear(orb_pattern *pattern) {

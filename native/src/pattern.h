@@ -15,6 +15,7 @@ typedef struct orb_pattern {
  * pair belongs to (pairs of the same two unknowns share one); -1 where an end is none or both are the same. */
 orb_status pattern_of_pairs(int32_t n, int32_t n_pairs, const int32_t *ends, orb_pattern *pattern, int64_t *slot,
                             orb_error *error);
+orb_status pattern_copy(const orb_pattern *pattern, orb_pattern *copy, orb_error *error);
 void pattern_clear(orb_pattern *pattern);
 
 #endif

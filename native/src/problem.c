@@ -276,7 +276,7 @@ double problem_energy(const orb_problem *problem, const orb_point *placed, const
     *relative = 0;
     for (int32_t v = 0; v < problem->n_vertices; v++) {
         gradient[v] = along_freedom(problem, v, position[v], gradient[v]);
-        double size = cabs(gradient[v]);
+        double size = modulus(gradient[v]);
         if (size > *relative * scale[v] || size != size)
             *relative = size / scale[v];
     }

@@ -47,32 +47,41 @@ orb_status solve_find_weights(orb_workshop *work, orb_error *error) {
     return status;
 }
 
+static orb_status find_order(orb_workshop *work, const orb_prepared *prepared, orb_error *error) {
+    const bool slow = !work->system->is_complex && work->system->n_free > MANY_VERTICES, known = prepared && !slow;
+    work->n_order = known ? prepared->mesh->n_used_vertices : work->system->n_free;
+    work->order = malloc(((size_t)work->n_order + 1) * sizeof *work->order);
+    if (!work->order)
+        return error_memory(error);
+    if (!known)
+        return system_find_order(work->system, slow ? ORDERING_METIS : ORDERING_AMD, work->order, error);
+    memcpy(work->order, prepared->order, (size_t)work->n_order * sizeof *work->order);
+    return ORB_OK;
+}
+
 /* The matrix's pattern and its ordering, which the initial guess shares. */
 orb_status solve_set_up(orb_workshop *work, orb_error *error) {
     double start = monitor_clock();
-    orb_status status = system_create(work->problem, problem_is_complex(work->problem), &work->system, error);
+    /* An ordering for the mesh's edges serves the intrinsic ones badly: seven times the fill on david. */
+    const orb_prepared *prepared = work->intrinsic ? NULL : work->embedding->surface->prepared;
+    orb_status status = system_create(work->problem, problem_is_complex(work->problem), prepared, &work->system, error);
     if (status != ORB_OK)
         return status;
     double built = monitor_clock();
-    if (!work->order) { /* else it is that of nearly the same edges */
-        bool slow = !work->system->is_complex && work->system->n_free > MANY_VERTICES;
-        work->order = malloc(((size_t)work->system->n_free + 1) * sizeof *work->order);
-        if (!work->order)
-            return error_memory(error);
-        status = cholesky_order(&work->system->blocks, slow ? ORDERING_METIS : ORDERING_AMD, work->order, error);
-    }
+    if (!work->order) /* else it is that of nearly the same edges */
+        status = find_order(work, prepared, error);
     work->embedding->report.seconds_assemble += built - start;
     work->embedding->report.seconds_analyze += monitor_clock() - built;
     return status;
 }
 
 /* Weights for the disk's own mesh: the same, unless it was refined. */
-static orb_status start_on_disk(orb_workshop *work, const int32_t *vertex_order, orb_point *start, orb_error *error) {
+static orb_status start_on_disk(orb_workshop *work, orb_point *start, orb_error *error) {
     const orb_disk *disk = work->disk;
     const bool same = !work->intrinsic; /* the ordering is one of the mesh's edges */
     if (!disk->refined)
-        return initial_embed(disk, work->embedding->tile, work->embedding->weights, same ? vertex_order : NULL,
-                             same ? work->system->n_free : 0, start, error);
+        return initial_embed(disk, work->embedding->tile, work->embedding->weights, same ? work->order : NULL,
+                             same ? work->n_order : 0, start, error);
     double *weights = malloc(((size_t)disk->mesh->n_edges + 1) * sizeof *weights);
     if (!weights)
         return error_memory(error);
@@ -85,21 +94,17 @@ static orb_status start_on_disk(orb_workshop *work, const int32_t *vertex_order,
 
 orb_status solve_start(orb_workshop *work, orb_error *error) {
     orb_embedding *embedding = work->embedding;
-    const orb_system *system = work->system;
     double began = monitor_clock();
     orb_status status = error_memory(error);
     size_t n = (size_t)embedding->mesh->n_vertices;
     orb_point *start = malloc(((size_t)work->disk->mesh->n_vertices + 1) * sizeof *start);
-    int32_t *vertex_order = malloc(((size_t)system->n_free + 1) * sizeof *vertex_order);
     embedding->position = malloc((n + 1) * sizeof *embedding->position);
-    if (!start || !vertex_order || !embedding->position)
+    if (!start || !embedding->position)
         goto done;
-    for (int32_t k = 0; k < system->n_free; k++)
-        vertex_order[k] = system->free_vertex[work->order[k]];
     if (geometry_any_start(embedding->tile->geometry)) {
         status = initial_boundary(work->disk, embedding->tile, start, error);
     } else {
-        status = start_on_disk(work, vertex_order, start, error);
+        status = start_on_disk(work, start, error);
     }
     if (status == ORB_OK) {
         memcpy(embedding->position, start, n * sizeof *start);
@@ -107,15 +112,14 @@ orb_status solve_start(orb_workshop *work, orb_error *error) {
     }
 done:
     free(start);
-    free(vertex_order);
     embedding->report.seconds_initial = monitor_clock() - began;
     return status;
 }
 
 static orb_status run_minimiser(orb_workshop *work, orb_minimum *minimum, orb_error *error) {
     orb_report *report = &work->embedding->report;
-    orb_status status = newton_minimise(work->problem, work->system, work->order, work->embedding->position, minimum,
-                                        &work->monitor, error);
+    orb_status status = newton_minimise(work->problem, work->system, work->n_order, work->order,
+                                        work->embedding->position, minimum, &work->monitor, error);
     report->seconds_assemble += minimum->seconds_assemble;
     report->seconds_analyze += minimum->seconds_analyze;
     report->seconds_factor += minimum->seconds_factor;
@@ -130,7 +134,7 @@ static orb_status find_minimum(orb_workshop *work, orb_minimum *minimum, orb_err
         return status;
     system_free(work->system);
     work->system = NULL;
-    status = system_create(work->problem, false, &work->system, error);
+    status = system_create(work->problem, false, NULL, &work->system, error);
     return status == ORB_OK ? run_minimiser(work, minimum, error) : status;
 }
 

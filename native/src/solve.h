@@ -16,7 +16,8 @@ typedef struct orb_workshop {
     orb_problem *problem;
     orb_intrinsic *intrinsic; /* for weights on other edges than the mesh's */
     orb_system *system;
-    int32_t *order; /* [system->n_free] of the system's blocks */
+    int32_t n_order;
+    int32_t *order; /* [n_order] at least all vertices that move, fill-reducing */
     bool dilated;   /* away from the minimum (dilation.h) */
     orb_monitor monitor;
 } orb_workshop;

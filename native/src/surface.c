@@ -7,6 +7,7 @@
 #include "boundary.h"
 #include "chords.h"
 #include "picks.h"
+#include "prepared.h"
 #include "refine.h"
 #include "topology.h"
 #include "weights.h"
@@ -215,7 +216,8 @@ orb_status surface_create(const orb_mesh_arrays *arrays, const orb_request *requ
     orb_surface *surface = calloc(1, sizeof *surface);
     orb_status status = surface ? read_request(surface, request, error) : error_memory(error);
     if (status == ORB_OK)
-        status = mesh_create(arrays, &input, error);
+        status =
+            request->prepared ? mesh_copy(request->prepared->mesh, &input, error) : mesh_create(arrays, &input, error);
     if (status == ORB_OK)
         status = mesh_require_connected(input, error);
     if (status == ORB_OK)
@@ -233,6 +235,7 @@ orb_status surface_create(const orb_mesh_arrays *arrays, const orb_request *requ
     }
     surface->about.filled_holes = surface->n_closed;
     surface->about.refined_edges = surface->n_halved;
+    surface->prepared = surface->n_closed == 0 && surface->n_halved == 0 ? request->prepared : NULL;
     *result = surface;
     return ORB_OK;
 }
@@ -245,9 +248,10 @@ orb_status surface_given_weights(const orb_surface *surface, const orb_request *
             "weights are given for the mesh's edges, but %d filled %s new ones: fill them in the mesh first",
             (int)surface->n_closed, surface->n_closed == 1 ? "hole has" : "holes have");
     if (surface->mesh == surface->plain)
-        return weights_compute(surface->mesh, request, weights, NULL, error);
+        return weights_compute(surface->mesh, request, NULL, weights, NULL, error);
     double *plain = malloc(((size_t)surface->plain->n_edges + 1) * sizeof *plain);
-    orb_status status = plain ? weights_compute(surface->plain, request, plain, NULL, error) : error_memory(error);
+    orb_status status =
+        plain ? weights_compute(surface->plain, request, NULL, plain, NULL, error) : error_memory(error);
     if (status == ORB_OK)
         chords_refine_weights(surface->plain, plain, surface->mesh, surface->parent, surface->halved, weights);
     free(plain);

@@ -9,7 +9,8 @@ static int32_t rows_of(const orb_system *system, int32_t free_index) {
     return system->unknown[free_index + 1] - system->unknown[free_index];
 }
 
-static orb_status number_vertices(const orb_problem *problem, orb_system *system, orb_error *error) {
+static orb_status number_vertices(const orb_problem *problem, const orb_prepared *prepared, orb_system *system,
+                                  orb_error *error) {
     size_t n = (size_t)problem->n_vertices;
     system->free_index = malloc((n + 1) * sizeof(int32_t));
     system->free_vertex = malloc((n + 1) * sizeof(int32_t));
@@ -18,8 +19,9 @@ static orb_status number_vertices(const orb_problem *problem, orb_system *system
         return error_memory(error);
     int32_t rows = 0;
     for (int32_t v = 0; v < problem->n_vertices; v++) {
-        system->free_index[v] = problem->freedom[v] ? system->n_free : -1;
-        if (!problem->freedom[v])
+        const bool has_row = prepared ? prepared->mesh->vertex_halfedge[v] >= 0 : problem->freedom[v] > 0;
+        system->free_index[v] = has_row ? system->n_free : -1;
+        if (!has_row)
             continue;
         system->free_vertex[system->n_free] = v;
         system->unknown[system->n_free++] = rows;
@@ -42,6 +44,23 @@ static orb_status build_blocks(const orb_problem *problem, orb_system *system, o
     orb_status status = pattern_of_pairs(system->n_free, problem->n_edges, ends, &system->blocks, system->slot, error);
     free(ends);
     return status;
+}
+
+/* The same, known already. What is between a fixed vertex and others has no slot: its row is its own. */
+static orb_status copy_blocks(const orb_problem *problem, const orb_prepared *prepared, orb_system *system,
+                              orb_error *error) {
+    size_t edges = (size_t)problem->n_edges;
+    orb_status status = pattern_copy(&prepared->blocks, &system->blocks, error);
+    system->slot = malloc((edges + 1) * sizeof *system->slot);
+    if (status != ORB_OK || !system->slot)
+        return error_memory(error);
+    for (size_t e = 0; e < edges; e++) {
+        const int32_t *ends = problem->edges + 2 * e, *vertex = problem->copies->vertex;
+        bool both = problem->freedom[vertex[ends[0]]] && problem->freedom[vertex[ends[1]]];
+        system->slot[e] = both ? prepared->slot[e] : -1;
+    }
+    system->analysis = prepared->analysis;
+    return ORB_OK;
 }
 
 /* Real systems: every block becomes one to two rows of one to two columns; below the diagonal only. */
@@ -69,15 +88,18 @@ static orb_status expand_pattern(orb_system *system, orb_error *error) {
     return ORB_OK;
 }
 
-orb_status system_create(const orb_problem *problem, bool is_complex, orb_system **result, orb_error *error) {
+orb_status system_create(const orb_problem *problem, bool is_complex, const orb_prepared *prepared, orb_system **result,
+                         orb_error *error) {
     *result = NULL;
     orb_system *system = calloc(1, sizeof *system);
     if (!system)
         return error_memory(error);
     system->is_complex = is_complex;
-    orb_status status = number_vertices(problem, system, error);
+    if (!is_complex)
+        prepared = NULL;
+    orb_status status = number_vertices(problem, prepared, system, error);
     if (status == ORB_OK)
-        status = build_blocks(problem, system, error);
+        status = prepared ? copy_blocks(problem, prepared, system, error) : build_blocks(problem, system, error);
     if (status == ORB_OK && !is_complex)
         status = expand_pattern(system, error);
     if (status != ORB_OK)
@@ -121,11 +143,20 @@ void system_free(orb_system *system) {
     free(system);
 }
 
-void system_spread_order(const orb_system *system, const int32_t *order, int32_t *rows) {
+orb_status system_find_order(const orb_system *system, orb_ordering ordering, int32_t *order, orb_error *error) {
+    orb_status status = cholesky_order(&system->blocks, ordering, order, error);
+    for (int32_t k = 0; k < system->n_free && status == ORB_OK; k++)
+        order[k] = system->free_vertex[order[k]];
+    return status;
+}
+
+void system_spread_order(const orb_system *system, int32_t n_order, const int32_t *order, int32_t *rows) {
     int32_t filled = 0;
-    for (int32_t k = 0; k < system->n_free; k++)
-        for (int32_t a = system->unknown[order[k]]; a < system->unknown[order[k] + 1]; a++)
+    for (int32_t k = 0; k < n_order; k++) {
+        int32_t i = system->free_index[order[k]];
+        for (int32_t a = i < 0 ? 0 : system->unknown[i]; i >= 0 && a < system->unknown[i + 1]; a++)
             rows[filled++] = a;
+    }
 }
 
 /* One edge's four blocks, its directions at p and q in the vertices' own frames; where one of the two is mirrored, so
@@ -183,6 +214,9 @@ void system_assemble(orb_system *system, const orb_problem *problem, const orb_p
             edge.C = edge.S = (edge.C + edge.S) / 2;
         add_edge(system, problem, e, edge, turn);
     }
+    for (int32_t j = 0; j < system->n_free; j++)
+        if (!problem->freedom[system->free_vertex[j]])
+            system->alpha[system->blocks.column[j]] = 1;
     if (system->is_complex)
         return;
     for (int32_t j = 0; j < system->n_free; j++) {

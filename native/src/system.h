@@ -10,6 +10,7 @@
 #define ORB_SYSTEM_H
 
 #include "cholesky.h"
+#include "prepared.h"
 #include "problem.h"
 
 typedef enum orb_hessian {
@@ -19,9 +20,9 @@ typedef enum orb_hessian {
 
 typedef struct orb_system {
     bool is_complex;
-    int32_t n_free;               /* vertices that move */
+    int32_t n_free;               /* vertices that have rows: those that move */
     int32_t *free_vertex;         /* [n_free] */
-    int32_t *free_index;          /* [n_vertices] -1 where fixed */
+    int32_t *free_index;          /* [n_vertices] -1: no row */
     orb_pattern blocks;           /* between moving vertices */
     int64_t *slot;                /* [n_edges] entry of `blocks` for the edge's mixed block; -1 if an end is fixed */
     int32_t *unknown;             /* [n_free+1] first row of each vertex; for complex systems the index itself */
@@ -29,13 +30,20 @@ typedef struct orb_system {
     orb_pattern pattern;          /* of the matrix itself; for complex systems that of the blocks (shared) */
     double complex *alpha, *beta; /* [entries of blocks] */
     double *values;               /* what cholesky_factor wants */
+    const orb_cholesky *analysis; /* of the pattern, where it is known already (borrowed); else NULL */
 } orb_system;
 
-orb_status system_create(const orb_problem *problem, bool is_complex, orb_system **system, orb_error *error);
+/* `prepared` (may be NULL): of the mesh whose edges are the problem's, in their sequence. A complex system then has its
+ * pattern, in which a fixed vertex has a row to itself. */
+orb_status system_create(const orb_problem *problem, bool is_complex, const orb_prepared *prepared, orb_system **system,
+                         orb_error *error);
 void system_free(orb_system *system);
 
-/* An ordering of the blocks spread over the rows: rows[unknown[n_free]]. */
-void system_spread_order(const orb_system *system, const int32_t *order, int32_t *rows);
+/* A fill-reducing ordering of the vertices: order[n_free]. */
+orb_status system_find_order(const orb_system *system, orb_ordering ordering, int32_t *order, orb_error *error);
+
+/* An ordering of (at least) the vertices that have rows, spread over these: rows[unknown[n_free]]. */
+void system_spread_order(const orb_system *system, int32_t n_order, const int32_t *order, int32_t *rows);
 
 void system_assemble(orb_system *system, const orb_problem *problem, const orb_point *position, const orb_point *placed,
                      const double complex *turn, orb_hessian hessian);

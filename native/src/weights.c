@@ -59,30 +59,40 @@ static orb_status blame_triangles(const orb_mesh *mesh, const double *weights, i
         (long long)found->found, found->found == 1 ? "triangle has" : "triangles have", (int)found->elements[0]);
 }
 
-static orb_status cotangent_weights(const orb_mesh *mesh, double clamp, double *weights, int64_t *n_clamped,
-                                    orb_error *error) {
-    if (!(clamp > 0) || !isfinite(clamp))
-        return error_set(error, ORB_BAD_ARGUMENT,
-                         "the least cotangent weight is %g: make it positive and finite, such as 0.01", clamp);
-    /* Edges of zero-area triangles: known so that none is counted twice. */
-    bool *raised = calloc((size_t)mesh->n_edges, sizeof *raised);
-    if (!raised)
+orb_status cotangents_measure(const orb_mesh *mesh, orb_cotangents *cotangents, orb_error *error) {
+    cotangents->sum = calloc((size_t)mesh->n_edges + 1, sizeof *cotangents->sum);
+    cotangents->n_flat = calloc((size_t)mesh->n_edges + 1, sizeof *cotangents->n_flat);
+    if (!cotangents->sum || !cotangents->n_flat) {
+        cotangents_clear(cotangents);
         return error_memory(error);
-    for (int32_t e = 0; e < mesh->n_edges; e++)
-        weights[e] = 0;
+    }
     for (int32_t t = 0; t < mesh->n_triangles; t++) {
         const triangle_shape shape = triangle_measure(mesh, t);
         double cot[3];
         const bool has_area = triangle_cotangents(&shape, cot);
         for (int32_t c = 0; c < 3; c++) {
             const int32_t e = mesh->edge[3 * t + c];
-            weights[e] += has_area ? 0.5 * cot[c] : clamp;
-            if (!has_area)
-                raised[e] = true;
+            if (has_area)
+                cotangents->sum[e] += 0.5 * cot[c];
+            else
+                cotangents->n_flat[e]++;
         }
     }
+    return ORB_OK;
+}
+
+void cotangents_clear(orb_cotangents *cotangents) {
+    free(cotangents->sum);
+    free(cotangents->n_flat);
+    *cotangents = (orb_cotangents){0};
+}
+
+/* A zero-area triangle adds the clamp. */
+static orb_status clamp_cotangents(const orb_mesh *mesh, const orb_cotangents *cotangents, double clamp,
+                                   double *weights, int64_t *n_clamped, orb_error *error) {
     bool finite = true;
     for (int32_t e = 0; e < mesh->n_edges; e++) {
+        weights[e] = cotangents->sum[e] + cotangents->n_flat[e] * clamp;
         if (!isfinite(weights[e])) {
             finite = false;
             continue;
@@ -90,11 +100,26 @@ static orb_status cotangent_weights(const orb_mesh *mesh, double clamp, double *
         const bool low = weights[e] < clamp;
         if (low)
             weights[e] = clamp;
-        if (low || raised[e])
+        if (low || cotangents->n_flat[e] > 0)
             ++*n_clamped;
     }
-    free(raised);
     return finite ? ORB_OK : blame_triangles(mesh, weights, 1, error);
+}
+
+/* known: of this mesh, or NULL */
+static orb_status cotangent_weights(const orb_mesh *mesh, const orb_cotangents *known, double clamp, double *weights,
+                                    int64_t *n_clamped, orb_error *error) {
+    if (!(clamp > 0) || !isfinite(clamp))
+        return error_set(error, ORB_BAD_ARGUMENT,
+                         "the least cotangent weight is %g: make it positive and finite, such as 0.01", clamp);
+    if (known)
+        return clamp_cotangents(mesh, known, clamp, weights, n_clamped, error);
+    orb_cotangents measured = {0};
+    orb_status status = cotangents_measure(mesh, &measured, error);
+    if (status == ORB_OK)
+        status = clamp_cotangents(mesh, &measured, clamp, weights, n_clamped, error);
+    cotangents_clear(&measured);
+    return status;
 }
 
 orb_status weights_mean_value_both(const orb_mesh *mesh, double *weights, orb_error *error) {
@@ -261,15 +286,15 @@ done:
     return status;
 }
 
-orb_status weights_compute(const orb_mesh *mesh, const orb_request *request, double *weights, int64_t *n_clamped,
-                           orb_error *error) {
+orb_status weights_compute(const orb_mesh *mesh, const orb_request *request, const orb_cotangents *known,
+                           double *weights, int64_t *n_clamped, orb_error *error) {
     int64_t counted = 0;
     orb_status status = ORB_OK;
     switch (request->weights) {
     case ORB_WEIGHTS_COTANGENT:
     case ORB_WEIGHTS_CONFORMAL:
     case ORB_WEIGHTS_DELAUNAY:
-        status = cotangent_weights(mesh, request->clamp, weights, &counted, error);
+        status = cotangent_weights(mesh, known, request->clamp, weights, &counted, error);
         break;
     case ORB_WEIGHTS_MEAN_VALUE:
     case ORB_WEIGHTS_MEAN_VALUE_EXACT:

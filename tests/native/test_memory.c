@@ -32,6 +32,21 @@ static orb_status embeds(const sample_mesh *mesh, const void *request, double *r
     return use_everything(mesh, request, room);
 }
 
+/* The same with a prepared mesh. */
+static orb_status prepares(const sample_mesh *mesh, const void *request, double *room) {
+    orb_mesh_arrays arrays = sample_arrays(mesh);
+    orb_request with = *(const orb_request *)request;
+    orb_prepared *prepared = NULL;
+    orb_error error;
+    orb_status status = orb_prepare(&arrays, &prepared, &error);
+    CHECK((status == ORB_OK) == (prepared != NULL));
+    with.prepared = prepared;
+    if (status == ORB_OK)
+        status = use_everything(mesh, &with, room);
+    orb_prepared_free(prepared);
+    return status;
+}
+
 /* Suggests cones, and predicts what the first ones do. */
 static orb_status suggests(const sample_mesh *mesh, const void *request, double *room) {
     orb_mesh_arrays arrays = sample_arrays(mesh);
@@ -93,6 +108,10 @@ static void fail_each(sample_mesh mesh, const char *signature, int32_t k, const 
 }
 
 TEST(out_of_memory_in_the_plane) { fail_each(sample_icosphere(1), "442", 3, (int32_t[]){0, 14, 30}); }
+TEST(out_of_memory_with_a_prepared_mesh) {
+    const orb_request request = asking("432", 3, (int32_t[]){0, 14, 30});
+    fail_each_in(prepares, sample_icosphere(1), &request, 1);
+}
 TEST(out_of_memory_with_a_modulus) { fail_each(sample_icosphere(1), "2222", 4, (int32_t[]){0, 14, 30, 3}); }
 TEST(out_of_memory_on_the_sphere) { fail_each(sample_icosphere(1), "432", 3, (int32_t[]){0, 14, 30}); }
 TEST(out_of_memory_with_two_cones) { fail_each(sample_icosphere(1), "33", 2, (int32_t[]){0, 30}); }

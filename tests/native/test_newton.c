@@ -19,7 +19,7 @@ static void check_derivatives(const char *signature, int32_t k) {
     orb_error error;
     REQUIRE(embed(&mesh, signature, k, cones, 0.01, &embedding, &error) == ORB_OK);
     REQUIRE(problem_of(embedding, &problem, &error) == ORB_OK);
-    REQUIRE(system_create(problem, false, &system, &error) == ORB_OK);
+    REQUIRE(system_create(problem, false, NULL, &system, &error) == ORB_OK);
     size_t n = (size_t)mesh.n_vertices, copies = (size_t)embedding->copies->n_copies;
     double complex *turn = malloc(copies * sizeof *turn), *along = calloc(n, sizeof *along);
     double complex *gradient[3];
@@ -95,9 +95,9 @@ static double way_back(const orb_embedding *embedding, const orb_problem *proble
         if (problem->freedom[v] == 2)
             position[v] = geometry_exp(problem->geometry, position[v], push);
     }
-    if (system_create(problem, is_complex, &system, &error) == ORB_OK &&
-        cholesky_order(&system->blocks, ORDERING_AMD, order, &error) == ORB_OK &&
-        newton_minimise(problem, system, order, position, minimum, &monitor, &error) == ORB_OK) {
+    if (system_create(problem, is_complex, NULL, &system, &error) == ORB_OK &&
+        system_find_order(system, ORDERING_AMD, order, &error) == ORB_OK &&
+        newton_minimise(problem, system, system->n_free, order, position, minimum, &monitor, &error) == ORB_OK) {
         gap = 0;
         for (size_t v = 0; v < n; v++)
             gap = fmax(gap, geometry_distance(problem->geometry, position[v], embedding->position[v]));

@@ -39,7 +39,7 @@ static weighted weigh_as(sample_mesh sample, orb_request request) {
         abort();
     }
     all.weights = sample_allocate((size_t)all.mesh->n_edges, sizeof *all.weights);
-    all.status = weights_compute(all.mesh, &request, all.weights, &all.clamped, &all.error);
+    all.status = weights_compute(all.mesh, &request, NULL, all.weights, &all.clamped, &all.error);
     return all;
 }
 
@@ -335,7 +335,7 @@ TEST(a_mesh_in_one_point) {
     for (int32_t e = 0; e < 12; e++)
         CHECK_NEAR(all.weights[e], 0.02, 1e-17);
     const orb_request mean = {.weights = ORB_WEIGHTS_MEAN_VALUE};
-    CHECK(weights_compute(all.mesh, &mean, all.weights, NULL, &all.error) == ORB_ZERO_AREA_TRIANGLE);
+    CHECK(weights_compute(all.mesh, &mean, NULL, all.weights, NULL, &all.error) == ORB_ZERO_AREA_TRIANGLE);
     CHECK(all.error.n_found == 8 && all.error.elements[7] == 7);
     weighted_free(&all);
 }
@@ -487,9 +487,9 @@ TEST(failed_allocations_are_reported) {
     const orb_request cot = {.weights = ORB_WEIGHTS_COTANGENT, .clamp = 0.01};
     const orb_request given = {.weights = ORB_WEIGHTS_GIVEN, .n_edge_weights = ROWS, .edge_weights = rows};
     allocations_fail = true;
-    CHECK(weights_compute(all.mesh, &cot, all.weights, NULL, &all.error) == ORB_OUT_OF_MEMORY);
-    CHECK(weights_compute(all.mesh, &given, all.weights, NULL, &all.error) == ORB_OUT_OF_MEMORY);
+    CHECK(weights_compute(all.mesh, &cot, NULL, all.weights, NULL, &all.error) == ORB_OUT_OF_MEMORY);
+    CHECK(weights_compute(all.mesh, &given, NULL, all.weights, NULL, &all.error) == ORB_OUT_OF_MEMORY);
     allocations_fail = false;
-    CHECK(weights_compute(all.mesh, &given, all.weights, NULL, &all.error) == ORB_OK);
+    CHECK(weights_compute(all.mesh, &given, NULL, all.weights, NULL, &all.error) == ORB_OK);
     weighted_free(&all);
 }
