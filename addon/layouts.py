@@ -16,7 +16,7 @@ from typing import Optional
 import bmesh
 import bpy
 import numpy as np
-from bpy.props import StringProperty
+from bpy.props import BoolProperty, StringProperty
 
 from . import blender_mesh
 from .core import Result
@@ -35,6 +35,7 @@ class OrbifoldLayout(bpy.types.PropertyGroup):
     chart: StringProperty()
     weights: StringProperty()
     cones: StringProperty()  # vertices, in the signature's sequence
+    seams: BoolProperty(default=True)  # the cut was marked as seams
     arrays: StringProperty()  # the others, as text (_packed)
 
 
@@ -100,8 +101,9 @@ def painted(layout: Layout, triangles: np.ndarray) -> tuple[Painted, FaceLayout]
     return tile, FaceLayout(layout.chart_name, layout.uv[usable], layout.points[usable], np.zeros((0, 2), int), 0, 0)
 
 
-def keep(mesh: bpy.types.Mesh, arrays: blender_mesh.MeshArrays, result: Result, layout: FaceLayout,
-         weights: str) -> None:
+def keep(
+    mesh: bpy.types.Mesh, arrays: blender_mesh.MeshArrays, result: Result, layout: FaceLayout, weights: str, seams: bool
+) -> None:
     """Remember the layout that was just written to the UV map. In object mode."""
     kept = mesh.orbifold.layouts
     while len(kept) >= KEPT:
@@ -109,6 +111,7 @@ def keep(mesh: bpy.types.Mesh, arrays: blender_mesh.MeshArrays, result: Result, 
     item = kept.add()
     item.signature, item.geometry, item.chart, item.weights = result.signature, result.geometry, layout.chart, weights
     item.cones = " ".join(map(str, result.cones.tolist()))
+    item.seams = seams
     mesh.orbifold.unwraps = (mesh.orbifold.unwraps + 1) % 2**30
     some = np.unique(np.linspace(0, len(arrays.triangles) - 1, SAMPLES).astype(int))
     uv = layout.uv[some]
@@ -186,14 +189,14 @@ def keep_cut(
     mode. `edges`: of `blender_mesh.read_edges`, where they are at hand."""
     found = blender_mesh.edge_indices(mesh, seams, edges)
     on_mesh = found >= 0
-    theirs = blender_mesh.read_seams(mesh) & ~blender_mesh.read_our_seams(mesh)
+    ours = blender_mesh.read_our_seams(mesh)
     paths = np.zeros(len(mesh.edges), np.int32)
-    paths[found[on_mesh]] = 2 * (numbers[on_mesh] + 1) + theirs[found[on_mesh]]
+    paths[found[on_mesh]] = 2 * (numbers[on_mesh] + 1) + ~ours[found[on_mesh]]
     blender_mesh.write_int_attribute(mesh, PATH_ATTRIBUTE, paths, "EDGE")
 
 
-def keep_cut_in_edit_mode(mesh: bpy.types.Mesh, seams: np.ndarray, numbers: np.ndarray) -> None:
-    """Paths and seams of a new cut, where an unwrap has made the attribute."""
+def keep_cut_in_edit_mode(mesh: bpy.types.Mesh, seams: np.ndarray, numbers: np.ndarray, mark_seams: bool) -> None:
+    """Paths, and if so asked seams, of a new cut, where an unwrap has made the attribute."""
     bm = bmesh.from_edit_mesh(mesh)
     layer = bm.edges.layers.int.get(PATH_ATTRIBUTE)
     if layer is None:
@@ -206,8 +209,8 @@ def keep_cut_in_edit_mode(mesh: bpy.types.Mesh, seams: np.ndarray, numbers: np.n
     for (a, b), number in zip(seams.tolist(), numbers.tolist()):
         edge = bm.edges.get((bm.verts[a], bm.verts[b]))
         if edge is not None:
-            edge[layer] = 2 * (number + 1) + edge.seam
-            edge.seam = True
+            edge[layer] = 2 * (number + 1) + (edge.seam or not mark_seams)
+            edge.seam = edge.seam or mark_seams
     bmesh.update_edit_mesh(mesh, loop_triangles=False, destructive=False)
 
 

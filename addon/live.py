@@ -214,18 +214,20 @@ def _write(obj: bpy.types.Object, computing: _Computing, result: core.Result) ->
     else:
         layout = faces.layout_of(result, arrays, chart)
     paths = cut_paths.number_paths(layout.seams, result.cones)
+    mark = latest is None or latest.seams
     expect(mesh)
     if mesh.is_editmode:
         blender_mesh.write_uv_in_edit_mode(mesh, arrays, layout.uv)
-        layouts.keep_cut_in_edit_mode(mesh, layout.seams, paths)
+        layouts.keep_cut_in_edit_mode(mesh, layout.seams, paths, mark)
     else:
         blender_mesh.write_uv(mesh, arrays, layout.uv)
-        blender_mesh.mark_seams(mesh, layout.seams, edges=computing.edges)
+        if mark:
+            blender_mesh.mark_seams(mesh, layout.seams, edges=computing.edges)
         layouts.keep_cut(mesh, layout.seams, paths, computing.edges)
     if computing.weights == FAST != _weights_of(mesh):
         mesh.orbifold.unwraps = (mesh.orbifold.unwraps + 1) % 2**30
     else:
-        layouts.keep(mesh, arrays, result, layout, computing.weights)
+        layouts.keep(mesh, arrays, result, layout, computing.weights, mark)
 
 
 # --------------------------------------------------------------------------------------------- the one timer

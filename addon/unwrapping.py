@@ -287,11 +287,12 @@ class Unwrapping:
         """The cut of all that was treated, and the layout, which only a whole mesh can be shown by."""
         mesh, pieces = self.obj.data, self.pieces
         if pieces[0].triangles is None:
-            layouts.keep(mesh, pieces[0].arrays, pieces[0].result, pieces[0].layout, self.settings.weights)
-        if self.settings.mark_seams or blender_mesh.PATH_ATTRIBUTE in mesh.attributes:
-            seams = np.concatenate([piece.layout.seams for piece in pieces])
-            ends = np.concatenate([piece.result.cones for piece in pieces])
-            layouts.keep_cut(mesh, seams, cut_paths.number_paths(seams, ends))
+            only = pieces[0]
+            settings = self.settings.weights, self.settings.mark_seams
+            layouts.keep(mesh, only.arrays, only.result, only.layout, *settings)
+        seams = np.concatenate([piece.layout.seams for piece in pieces])
+        ends = np.concatenate([piece.result.cones for piece in pieces])
+        layouts.keep_cut(mesh, seams, cut_paths.number_paths(seams, ends))
         live.note_written(mesh)
 
     def _write_cones(self) -> None:

@@ -13,6 +13,7 @@ from .fitting import fitting_signatures
 from .jobs import Job, Progress, wait_for, wait_until_over
 from .meshio import MeshFileError, read_mesh
 from .polygon import Polygon
+from .predict import Prediction, PredictionJob, predict, start_predicting
 from .prepare import PreparedMesh, prepare
 from .result import CHARTS, Result
 from .signatures import (
@@ -27,10 +28,8 @@ from .signatures import (
 )
 from .suggest import (
     DEPENDS_ON_CONES,
-    Prediction,
     Suggestion,
     SuggestionJob,
-    predict,
     start_suggesting,
     suggest_cones,
     worth_trying,
@@ -49,6 +48,7 @@ __all__ = [
     "Outline",
     "Polygon",
     "Prediction",
+    "PredictionJob",
     "PreparedMesh",
     "Progress",
     "Result",
@@ -70,6 +70,7 @@ __all__ = [
     "prepare",
     "read_mesh",
     "start_embedding",
+    "start_predicting",
     "start_suggesting",
     "suggest_cones",
     "surface_name",

@@ -235,6 +235,8 @@ PROTOTYPES = {
     "orb_predict": (c_int, [POINTER(MeshArrays), POINTER(Request), DOUBLES, DOUBLES, POINTER(Error)]),
     "orb_job_start_suggest": (c_int, [POINTER(MeshArrays), POINTER(SuggestRequest), POINTER(JOB), POINTER(Error)]),
     "orb_job_finish_suggest": (c_int, [JOB, POINTER(SUGGESTIONS), POINTER(Error)]),
+    "orb_job_start_predict": (c_int, [POINTER(MeshArrays), POINTER(Request), POINTER(JOB), POINTER(Error)]),
+    "orb_job_finish_predict": (c_int, [JOB, DOUBLES, DOUBLES, POINTER(Error)]),
 }
 
 
@@ -428,37 +430,27 @@ def suggest_request_of(
     return request
 
 
-def predict(vertices: np.ndarray, triangles: np.ndarray, request: Request) -> tuple[float, np.ndarray]:
-    """orb_predict: the spread of log area and the log scale at each vertex (n,)."""
-    spread, scale, record = c_double(), np.empty(len(vertices)), Error()
-    mesh = mesh_arrays(vertices, triangles)
-    check(library().orb_predict(mesh, request, spread, doubles(scale), record), record)
-    return spread.value, scale
-
-
 def mesh_arrays(vertices: np.ndarray, triangles: np.ndarray) -> MeshArrays:
     return MeshArrays(len(vertices), doubles(vertices), len(triangles), int32s(triangles))
 
 
 class Job:
-    """An orb_job, an embedding's or that of suggestions, after the kind of request. One that is dropped without
-    `finish` is cancelled, and its thread cleans up after itself."""
+    """An orb_job: one of the three kinds below. One that is dropped without `finish` is cancelled, and its thread cleans
+    up after itself."""
+
+    START: str  # the library's function
 
     def __init__(self, mesh: MeshArrays | None, request: Request | SuggestRequest) -> None:
-        """mesh: None where the request has a prepared one."""
+        """mesh: None where the request has a prepared one. The library copies the arrays before this returns."""
         native = self._native = library()
-        if isinstance(request, Request):
-            start, self._finish, self._made = native.orb_job_start, native.orb_job_finish, Embedding
-        else:
-            start, self._finish, self._made = native.orb_job_start_suggest, native.orb_job_finish_suggest, Suggestions
-        self._pointer, record = c_void_p(), Error()  # the library copies the arrays before the call returns
-        check(start(mesh, request, self._pointer, record), record)
-        self._abandon = weakref.finalize(self, Job._cancel_and_finish, native, self._finish, self._pointer)
+        self._pointer, record = c_void_p(), Error()
+        check(getattr(native, self.START)(mesh, request, self._pointer, record), record)
+        self._abandon = weakref.finalize(self, Job._cancel_and_finish, native, self._pointer)
 
     @staticmethod
-    def _cancel_and_finish(native: ctypes.CDLL, finish: Callable, pointer: c_void_p) -> None:
+    def _cancel_and_finish(native: ctypes.CDLL, pointer: c_void_p) -> None:
         native.orb_job_cancel(pointer)
-        finish(pointer, None, None)
+        native.orb_job_finish(pointer, None, None)  # any kind: it was cancelled
 
     def poll(self) -> tuple[str, float, bool]:
         """(stage, fraction, whether it is done or cancelled)"""
@@ -469,10 +461,44 @@ class Job:
     def cancel(self) -> None:
         self._native.orb_job_cancel(self._pointer)
 
-    def finish(self) -> Embedding | Suggestions:
+    def finish(self) -> object:
         """Waits, and gives what was computed or raises OrbifoldError; the job is gone then."""
         self._abandon.detach()
         pointer, self._pointer = self._pointer, c_void_p()  # a finished job takes no calls (NULL is harmless)
+        return self._take(pointer)
+
+    def _take(self, pointer: c_void_p) -> object:
+        raise NotImplementedError
+
+
+class EmbeddingJob(Job):
+    START = "orb_job_start"
+
+    def _take(self, pointer: c_void_p) -> Embedding:
         made, record = c_void_p(), Error()
-        check(self._finish(pointer, made, record), record)
-        return self._made(made)
+        check(self._native.orb_job_finish(pointer, made, record), record)
+        return Embedding(made)
+
+
+class SuggestionJob(Job):
+    START = "orb_job_start_suggest"
+
+    def _take(self, pointer: c_void_p) -> Suggestions:
+        made, record = c_void_p(), Error()
+        check(self._native.orb_job_finish_suggest(pointer, made, record), record)
+        return Suggestions(made)
+
+
+class PredictionJob(Job):
+    """Its result: the spread of log area, and the log scale at each vertex (n,)."""
+
+    START = "orb_job_start_predict"
+
+    def __init__(self, mesh: MeshArrays, request: Request) -> None:
+        super().__init__(mesh, request)
+        self._n_vertices = mesh.n_vertices
+
+    def _take(self, pointer: c_void_p) -> tuple[float, np.ndarray]:
+        spread, scale, record = c_double(), np.empty(self._n_vertices), Error()
+        check(self._native.orb_job_finish_predict(pointer, spread, doubles(scale), record), record)
+        return spread.value, scale

@@ -29,7 +29,7 @@ FIXED_CHARTS = {"euclidean": "conformal"}  # a polygon in the plane has no latti
 class EmbeddingJob(Job[Result]):
     """`start_embedding` makes it; `finish` gives the certified embedding."""
 
-    def __init__(self, job: binding.Job, n_vertices: int, chart: str | None) -> None:
+    def __init__(self, job: binding.EmbeddingJob, n_vertices: int, chart: str | None) -> None:
         super().__init__(job, lambda embedding: result_of(embedding, n_vertices, chart))
 
 
@@ -69,9 +69,9 @@ def start_embedding(
         *(signature, picked, orders, treated, native_polygon, edge_weights), weights=kind, clamp=clamp
     )
     if prepared is None:
-        return EmbeddingJob(binding.Job(binding.mesh_arrays(points, faces), request), len(points), chart)
+        return EmbeddingJob(binding.EmbeddingJob(binding.mesh_arrays(points, faces), request), len(points), chart)
     request.prepared = prepared.native.pointer
-    return EmbeddingJob(binding.Job(None, request), prepared.n_vertices, chart)
+    return EmbeddingJob(binding.EmbeddingJob(None, request), prepared.n_vertices, chart)
 
 
 def embed(

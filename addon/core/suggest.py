@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where to put the cones, and what they will cost. `suggest_cones` waits, `start_suggesting` gives a job to poll.
+"""Where to put the cones. `suggest_cones` waits, `start_suggesting` gives a job to poll.
 
     best = suggest_cones(vertices, triangles)[0]
     result = embed(vertices, triangles, best.signature, best.cones)
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import binding
-from .arrays import holes_of, integers, mesh_of, picks_of, unknown
+from .arrays import holes_of, integers, mesh_of, unknown
 from .errors import OrbifoldError
 from .jobs import Job, Progress, wait_for
 from .signatures import geometry_of
@@ -38,18 +38,10 @@ class Suggestion:
     symmetric: bool  # the cones are their own mirror image
 
 
-@dataclass(frozen=True, eq=False)
-class Prediction:
-    """Of the conformal map with given cones."""
-
-    spread: float  # of log area
-    scale: np.ndarray  # (n,) u: lengths are stretched by e^u; area-weighted mean 0, and 0 at isolated vertices
-
-
 class SuggestionJob(Job[list[Suggestion]]):
     """`start_suggesting` makes it; `finish` gives the suggestions, best first."""
 
-    def __init__(self, job: binding.Job) -> None:
+    def __init__(self, job: binding.SuggestionJob) -> None:
         super().__init__(job, _suggestions_of)
 
 
@@ -73,7 +65,7 @@ def start_suggesting(
     weights = None if keep_away is None else _weights_of(keep_away, len(points))
     way, plane = _symmetry_of(symmetry)
     request = binding.suggest_request_of(names, bool(flat), kept, weights, holes_of(holes), way, plane)
-    return SuggestionJob(binding.Job(binding.mesh_arrays(points, faces), request))
+    return SuggestionJob(binding.SuggestionJob(binding.mesh_arrays(points, faces), request))
 
 
 def suggest_cones(
@@ -106,23 +98,6 @@ def suggest_cones(
         *(vertices, triangles, signatures, fixed, keep_away), flat=flat, holes=holes, symmetry=symmetry
     )
     return wait_for(job, progress)
-
-
-def predict(
-    vertices: ArrayLike,
-    triangles: ArrayLike,
-    signature: str,
-    cones: Sequence[int] | np.ndarray,
-    orders: Sequence[int] | np.ndarray | None = None,
-    *,
-    holes: str = "refuse",
-) -> Prediction:
-    """What the conformal map with these cones does to areas: one linear solve. Arguments are those of `embed`."""
-    points, faces = mesh_of(vertices, triangles)
-    picked, orders = picks_of(cones, orders)
-    return Prediction(
-        *binding.predict(points, faces, binding.request_of(signature, picked, orders, holes_of(holes)))
-    )
 
 
 def worth_trying(suggestions: Sequence[Suggestion], weights: str = "conformal") -> list[Suggestion]:

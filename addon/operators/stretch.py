@@ -6,7 +6,8 @@ from __future__ import annotations
 import bpy
 
 from .. import arrangement, blender_mesh, cones, core, heat, properties
-from .jobs import mesh_problem, report_failure
+from .jobs import JobOperator, mesh_problem
+
 
 def stretch_problem(context: bpy.types.Context) -> str | None:
     problem = mesh_problem(context)
@@ -15,7 +16,7 @@ def stretch_problem(context: bpy.types.Context) -> str | None:
     return problem
 
 
-class MESH_OT_orbifold_show_stretch(bpy.types.Operator):
+class MESH_OT_orbifold_show_stretch(JobOperator, bpy.types.Operator):
     bl_idname = "mesh.orbifold_show_stretch"
     bl_label = "Show Predicted Stretch"
     bl_description = (
@@ -24,37 +25,25 @@ class MESH_OT_orbifold_show_stretch(bpy.types.Operator):
         f"{heat.STRETCH.colour}"
     )
     bl_options = {"REGISTER", "UNDO"}
+    problem = staticmethod(stretch_problem)
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        problem = stretch_problem(context)
-        if problem is not None:
-            cls.poll_message_set(problem)
-        return problem is None
+    def prepare(self, context: bpy.types.Context) -> None:
+        with blender_mesh.object_mode(context.active_object):
+            heat.check(context.active_object.data, heat.STRETCH)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        obj = context.active_object
-        mesh = obj.data
-        with blender_mesh.object_mode(obj):
-            arrays = blender_mesh.read_mesh(mesh)
-            try:
-                prediction = _predict(mesh, arrays)
-                heat.check(mesh, heat.STRETCH)
-            except (core.OrbifoldError, blender_mesh.BlenderMeshError) as error:
-                report_failure(self, context, arrays, error)
-                return {"CANCELLED"}
-            heat.show(context, mesh, heat.STRETCH, prediction.scale)
-        self.report({"INFO"}, f"Predicted area spread {prediction.spread:.2f}. {shading_hint(context)}")
-        return {"FINISHED"}
+    def start(self, context: bpy.types.Context) -> core.Job:
+        mesh = context.active_object.data
+        signature, picked = properties.default_signature(mesh), [cone.vertex for cone in cones.read_cones(mesh)]
+        return core.start_predicting(
+            *(self._arrays.vertices, self._arrays.triangles, signature),
+            arrangement.in_sequence(picked, self._surface, signature), holes=mesh.orbifold.holes,
+        )
 
-
-def _predict(mesh: bpy.types.Mesh, arrays: blender_mesh.MeshArrays) -> core.Prediction:
-    surface, picked = core.topology_of(arrays.triangles), [cone.vertex for cone in cones.read_cones(mesh)]
-    signature = properties.default_signature(mesh)
-    return core.predict(
-        *(arrays.vertices, arrays.triangles, signature, arrangement.in_sequence(picked, surface, signature)),
-        holes=mesh.orbifold.holes,
-    )
+    def proceed(self, context: bpy.types.Context, job: core.Job) -> str:
+        prediction = job.finish()
+        with blender_mesh.object_mode(context.active_object):
+            heat.show(context, context.active_object.data, heat.STRETCH, prediction.scale)
+        return f"Predicted area spread {prediction.spread:.2f}. {shading_hint(context)}"
 
 
 def shading_hint(context: bpy.types.Context) -> str:

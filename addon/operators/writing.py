@@ -46,7 +46,8 @@ class UVOperator(EmbeddingOperator):
     )
     mark_seams: BoolProperty(
         name="Mark Seams",
-        description="Mark the cut as seams, in place of the one of an earlier Orbifold Unwrap. Your own seams stay",
+        description="Mark the cut as seams, in place of the one of an earlier Orbifold Unwrap. Your own seams stay. Without "
+        "it the cut is drawn all the same",
         default=True,
     )
     sphere_key: BoolProperty(
@@ -84,9 +85,8 @@ class UVOperator(EmbeddingOperator):
         blender_mesh.write_uv(obj.data, self._arrays, layout.uv)
         if self.mark_seams:
             blender_mesh.mark_seams(obj.data, layout.seams)
-        layouts.keep(obj.data, self._arrays, result, layout, self.weights)
-        if self.mark_seams or blender_mesh.PATH_ATTRIBUTE in obj.data.attributes:
-            layouts.keep_cut(obj.data, layout.seams, cut_paths.number_paths(layout.seams, result.cones))
+        layouts.keep(obj.data, self._arrays, result, layout, self.weights, self.mark_seams)
+        layouts.keep_cut(obj.data, layout.seams, cut_paths.number_paths(layout.seams, result.cones))
         live.note_written(obj.data)
         if key is not None:
             blender_mesh.write_shape_key(obj, key)

@@ -71,14 +71,17 @@ ORB_API bool orb_suggestions_plane(const orb_suggestions *suggestions, double pl
 
 /* The conformal map's log scale u at each vertex, scale[n_vertices] (0 for isolated vertices; area-weighted mean 0), and
  * the spread of log area that it means, for the signature, cones, orders and holes of a request. Either may be NULL.
- * Errors: those of orb_embed that concern the mesh, the signature and the picks. */
+ * Errors: those of orb_embed that concern the mesh, the signature and the picks; ORB_CANCELLED. */
 ORB_API orb_status orb_predict(const orb_mesh_arrays *mesh, const orb_request *request, double *spread, double *scale,
                                orb_error *error);
 
-/* The same as orb_suggest_cones on a thread of the library's own; poll and cancel as any job. */
+/* The same as orb_suggest_cones and orb_predict on a thread of the library's own; poll and cancel as any job. */
 ORB_API orb_status orb_job_start_suggest(const orb_mesh_arrays *mesh, const orb_suggest_request *request, orb_job **job,
                                          orb_error *error);
 ORB_API orb_status orb_job_finish_suggest(orb_job *job, orb_suggestions **suggestions, orb_error *error);
+ORB_API orb_status orb_job_start_predict(const orb_mesh_arrays *mesh, const orb_request *request, orb_job **job,
+                                         orb_error *error);
+ORB_API orb_status orb_job_finish_predict(orb_job *job, double *spread, double *scale, orb_error *error);
 
 #ifdef __cplusplus
 }

@@ -1,4 +1,4 @@
-/* orb_embed and orb_suggest_cones on a thread of the library's own. SPDX-License-Identifier: GPL-3.0-or-later
+/* orb_embed, orb_suggest_cones and orb_predict on a thread of the library's own. SPDX-License-Identifier: GPL-3.0-or-later
  *
  * The job owns copies of everything that the computation reads, and is shared by two holders: the caller (from
  * orb_job_start to orb_job_finish) and the thread. Whoever lets go last frees it. So a cancelled job costs the caller
@@ -16,14 +16,16 @@
 /* Ample for the recursions of the orderings; only pages that are touched take memory. */
 enum { JOB_STACK_BYTES = 16 * 1024 * 1024, JOB_STAGE_LENGTH = 32, MOST_COPIES = 8 };
 
+typedef enum job_kind { JOB_EMBEDS, JOB_SUGGESTS, JOB_PREDICTS } job_kind;
+
 struct orb_job {
     pthread_t thread;
     /* Read by the thread only, after the start. */
     orb_mesh_arrays mesh;
     orb_prepared *prepared; /* instead of the mesh, or NULL */
-    bool suggests;          /* which of the two requests it is */
-    orb_request request;
-    orb_suggest_request suggest;
+    job_kind kind;
+    orb_request request;         /* of embeddings and predictions */
+    orb_suggest_request suggest; /* of suggestions */
     orb_polygon polygon;
     int32_t n_copies;
     void *copies[MOST_COPIES]; /* of all that the mesh and the request point to */
@@ -37,6 +39,7 @@ struct orb_job {
     orb_status status;
     orb_embedding *embedding;
     orb_suggestions *suggestions;
+    double spread, *scale; /* [mesh.n_vertices] one of the copies */
     orb_error error;
 };
 
@@ -95,13 +98,24 @@ static void *job_run(void *user) {
     orb_embedding *embedding = NULL;
     orb_suggestions *suggestions = NULL;
     orb_error error = {0};
-    orb_status status = job->suggests ? orb_suggest_cones(&job->mesh, &job->suggest, &suggestions, &error)
-                                      : orb_embed(&job->mesh, &job->request, &embedding, &error);
+    double spread = 0;
+    orb_status status = ORB_OK;
+    switch (job->kind) {
+    case JOB_EMBEDS:
+        status = orb_embed(&job->mesh, &job->request, &embedding, &error);
+        break;
+    case JOB_SUGGESTS:
+        status = orb_suggest_cones(&job->mesh, &job->suggest, &suggestions, &error);
+        break;
+    case JOB_PREDICTS:
+        status = orb_predict(&job->mesh, &job->request, &spread, job->scale, &error);
+    }
 
     pthread_mutex_lock(&job->mutex);
     job->status = status;
     job->embedding = embedding;
     job->suggestions = suggestions;
+    job->spread = spread;
     job->error = error;
     job->done = true;
     pthread_cond_broadcast(&job->changed);
@@ -110,8 +124,10 @@ static void *job_run(void *user) {
 }
 
 /* A job with a copy of the mesh, if there is one; NULL when memory runs out. */
-static orb_job *job_create(const orb_mesh_arrays *mesh) {
+static orb_job *job_create(job_kind kind, const orb_mesh_arrays *mesh) {
     orb_job *job = calloc(1, sizeof *job);
+    if (job)
+        job->kind = kind;
     if (!job || !mesh)
         return job;
     bool fine = true;
@@ -175,7 +191,6 @@ static bool take_signatures(orb_job *job, const orb_suggest_request *request) {
 static bool take_suggest_request(orb_job *job, const orb_suggest_request *request) {
     bool fine = true;
     orb_suggest_request *own = &job->suggest;
-    job->suggests = true;
     *own = *request;
     own->fixed = job_copy(job, request->fixed, request->n_fixed, sizeof(int32_t), &fine);
     own->keep_away = job_copy(job, request->keep_away, job->mesh.n_vertices, sizeof(double), &fine);
@@ -235,7 +250,7 @@ orb_status orb_job_start(const orb_mesh_arrays *mesh, const orb_request *request
         *job = NULL;
     if (!request || (!mesh && !request->prepared) || !job)
         return error_set(error, ORB_BAD_ARGUMENT, "orb_job_start needs a mesh, a request and a place for the job");
-    orb_job *made = job_create(request->prepared ? NULL : mesh);
+    orb_job *made = job_create(JOB_EMBEDS, request->prepared ? NULL : mesh);
     if (made && take_request(made, request))
         return job_start(made, job, error);
     job_free(made);
@@ -249,8 +264,29 @@ orb_status orb_job_start_suggest(const orb_mesh_arrays *mesh, const orb_suggest_
     if (!mesh || !request || !job)
         return error_set(error, ORB_BAD_ARGUMENT,
                          "orb_job_start_suggest needs a mesh, a request and a place for the job");
-    orb_job *made = job_create(mesh);
+    orb_job *made = job_create(JOB_SUGGESTS, mesh);
     if (made && take_suggest_request(made, request))
+        return job_start(made, job, error);
+    job_free(made);
+    return error_memory(error);
+}
+
+static bool make_room_for_scale(orb_job *job) {
+    job->scale = calloc((size_t)(job->mesh.n_vertices > 0 ? job->mesh.n_vertices : 0) + 1, sizeof *job->scale);
+    if (job->scale)
+        job->copies[job->n_copies++] = job->scale;
+    return job->scale != NULL;
+}
+
+orb_status orb_job_start_predict(const orb_mesh_arrays *mesh, const orb_request *request, orb_job **job,
+                                 orb_error *error) {
+    if (job)
+        *job = NULL;
+    if (!mesh || !request || !job)
+        return error_set(error, ORB_BAD_ARGUMENT,
+                         "orb_job_start_predict needs a mesh, a request and a place for the job");
+    orb_job *made = job_create(JOB_PREDICTS, mesh);
+    if (made && take_request(made, request) && make_room_for_scale(made))
         return job_start(made, job, error);
     job_free(made);
     return error_memory(error);
@@ -282,8 +318,34 @@ void orb_job_cancel(orb_job *job) {
     pthread_mutex_unlock(&job->mutex);
 }
 
-/* Waits, hands over what was asked for (the other is NULL), and lets go of the job. */
-static orb_status job_finish(orb_job *job, orb_embedding **embedding, orb_suggestions **suggestions, orb_error *error) {
+/* Where the caller wants each result; NULL: it does not. */
+typedef struct job_results {
+    orb_embedding **embedding;
+    orb_suggestions **suggestions;
+    double *spread, *scale;
+} job_results;
+
+/* Called with the mutex held, of a job that is done. */
+static void job_hand_over(orb_job *job, const job_results *results) {
+    if (results->embedding) {
+        *results->embedding = job->embedding;
+        job->embedding = NULL;
+    }
+    if (results->suggestions) {
+        *results->suggestions = job->suggestions;
+        job->suggestions = NULL;
+    }
+    if (results->spread)
+        *results->spread = job->spread;
+    if (results->scale && job->status == ORB_OK)
+        memcpy(results->scale, job->scale, (size_t)job->mesh.n_vertices * sizeof *results->scale);
+}
+
+/* Waits, hands over what was asked for, and lets go of the job, also where it is of another kind. */
+static orb_status job_finish(orb_job *job, job_kind kind, const job_results *results, orb_error *error) {
+    static const char *const finishes[] = {"makes an embedding: finish it with orb_job_finish",
+                                           "suggests cones: finish it with orb_job_finish_suggest",
+                                           "predicts: finish it with orb_job_finish_predict"};
     if (!job)
         return error_set(error, ORB_BAD_ARGUMENT, "there is no job to finish; start one first");
     pthread_mutex_lock(&job->mutex);
@@ -295,17 +357,12 @@ static orb_status job_finish(orb_job *job, orb_embedding **embedding, orb_sugges
     bool done = job->done;
     if (job->cancelled) {
         status = error_set(error, ORB_CANCELLED, "cancelled");
+    } else if (job->kind != kind) {
+        status = error_set(error, ORB_BAD_ARGUMENT, "the job %s", finishes[job->kind]);
     } else {
         if (error)
             *error = job->error;
-        if (embedding) {
-            *embedding = job->embedding;
-            job->embedding = NULL;
-        }
-        if (suggestions) {
-            *suggestions = job->suggestions;
-            job->suggestions = NULL;
-        }
+        job_hand_over(job, results);
     }
     job_release(job);
     /* A thread that is done has let go of the job and only has to return; any other one is left to itself. */
@@ -319,19 +376,15 @@ static orb_status job_finish(orb_job *job, orb_embedding **embedding, orb_sugges
 orb_status orb_job_finish(orb_job *job, orb_embedding **embedding, orb_error *error) {
     if (embedding)
         *embedding = NULL;
-    const bool wrong = job && job->suggests;
-    const orb_status status = job_finish(job, embedding, NULL, error);
-    if (!wrong || status != ORB_OK)
-        return status;
-    return error_set(error, ORB_BAD_ARGUMENT, "the job suggests cones: finish it with orb_job_finish_suggest");
+    return job_finish(job, JOB_EMBEDS, &(job_results){.embedding = embedding}, error);
 }
 
 orb_status orb_job_finish_suggest(orb_job *job, orb_suggestions **suggestions, orb_error *error) {
     if (suggestions)
         *suggestions = NULL;
-    const bool wrong = job && !job->suggests;
-    const orb_status status = job_finish(job, NULL, suggestions, error);
-    if (!wrong || status != ORB_OK)
-        return status;
-    return error_set(error, ORB_BAD_ARGUMENT, "the job makes an embedding: finish it with orb_job_finish");
+    return job_finish(job, JOB_SUGGESTS, &(job_results){.suggestions = suggestions}, error);
+}
+
+orb_status orb_job_finish_predict(orb_job *job, double *spread, double *scale, orb_error *error) {
+    return job_finish(job, JOB_PREDICTS, &(job_results){.spread = spread, .scale = scale}, error);
 }

@@ -81,6 +81,30 @@ def check_a_path_is_two_sides_that_one_motion_carries_to_one_another():
             assert np.allclose(*forms, rtol=1e-3, atol=2e-4), (signature, path, np.abs(forms[0] - forms[1]).max())
 
 
+def check_the_cut_is_known_without_seams_and_seams_by_hand_stay():
+    obj = unwrapped(mark_seams=False)
+    cut, _, _ = layouts.read_cut(obj.data)
+    assert cut and not any(edge.use_seam for edge in obj.data.edges)
+    by_hand = cut[0]
+    obj.data.edges[by_hand].use_seam = True
+    bpy.context.window_manager.orbifold_live = True
+    try:
+        for number, mode in enumerate((object_mode, edit_mode)):
+            mode()
+            part("properties").set_cones(obj.data, far_vertices(obj, 9)[3 * number + 3 :][:3], [4, 4, 2])
+            bpy.context.view_layer.update()  # as the window does before it is drawn
+            settled()
+            object_mode()
+            before, (cut, _, _) = cut, layouts.read_cut(obj.data)
+            assert cut != before
+            assert [edge.index for edge in obj.data.edges if edge.use_seam] == [by_hand]
+    finally:
+        bpy.context.window_manager.orbifold_live = False
+    bpy.ops.uv.orbifold_unwrap()
+    cut, _, _ = layouts.read_cut(obj.data)
+    assert sorted({*cut, by_hand}) == [edge.index for edge in obj.data.edges if edge.use_seam]
+
+
 def check_the_layout_is_found_again_after_saving_and_undo():
     obj = unwrapped("442")
     _, before = read(obj)

@@ -292,6 +292,7 @@ def check_nothing_else_of_the_mesh_changes():
     bpy.ops.uv.orbifold_unwrap(mark_seams=False)
     after = digest(obj)
     obj.data.uv_layers.remove(obj.data.uv_layers["Orbifold"])
+    obj.data.attributes.remove(obj.data.attributes["orbifold_path"])  # where the cut runs, for drawing it
     stripped = digest(obj)
     other = quad_blob()
     other.data.attributes.new("mine", "INT", "POINT").data[3].value = 5
