@@ -150,6 +150,8 @@ class MESH_OT_orbifold_cancel_live(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         problem = mesh_problem(context)
+        if problem is None and live.progress(context.active_object.data) is None:
+            problem = "Orbifold Live computes nothing now"
         if problem is not None:
             cls.poll_message_set(problem)
         return problem is None

@@ -413,6 +413,26 @@ def check_live_sees_edits_of_the_surface():
         bpy.context.window_manager.orbifold_live = False
 
 
+def check_live_does_not_wait_for_a_large_mesh_and_can_be_cancelled():
+    obj = with_live()
+    limit, live.LARGE = live.LARGE, 100
+    try:
+        before = uv_in_edit_mode(obj)
+        obj.data.orbifold.signature = "333"
+        assert live.progress(obj.data) is not None and np.array_equal(uv_in_edit_mode(obj), before)
+        assert bpy.ops.mesh.orbifold_cancel_live() == {"FINISHED"}
+        assert not bpy.ops.mesh.orbifold_cancel_live.poll() and live.progress(obj.data) is None
+        settled()
+        assert live.problem(obj.data).startswith("Cancelled") and np.array_equal(uv_in_edit_mode(obj), before)
+        obj.data.orbifold.signature = "632"
+        assert live.progress(obj.data) is not None
+        settled()
+        assert live.problem(obj.data) is None and np.abs(uv_in_edit_mode(obj) - before).max() > 1e-4
+    finally:
+        live.LARGE = limit
+        bpy.context.window_manager.orbifold_live = False
+
+
 def check_live_ends_with_the_object_and_the_file():
     obj = with_live()
     obj.data.orbifold.signature = "333"
