@@ -36,6 +36,7 @@ WEIGHTS = {
 }
 WEIGHTS_GIVEN = 3
 HOLES = {"refuse": 0, "fill": 1, "mirror": 2}
+CUTS = {"automatic": 0, "path": 1}
 SYMMETRIES = {"detect": 0, "ignore": 1}
 SYMMETRY_PLANE = 2
 CHARTS = {
@@ -91,6 +92,7 @@ class Request(Structure):
         ("cones", INT32S),
         ("orders", INT32S),
         ("holes", c_int),
+        ("cut", c_int),
         ("polygon", POINTER(Polygon)),
         ("weights", c_int),
         ("clamp", c_double),

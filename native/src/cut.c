@@ -295,13 +295,13 @@ static orb_status path_or_graph(orb_mesh *mesh, const orb_marks *marks, orb_disk
     return status;
 }
 
-orb_status cut_open(orb_mesh *mesh, const orb_signature *signature, const int32_t *parent, const orb_marks *marks,
-                    orb_disk **disk, orb_error *error) {
+orb_status cut_open(orb_mesh *mesh, const orb_signature *signature, orb_cut cut, const int32_t *parent,
+                    const orb_marks *marks, orb_disk **disk, orb_error *error) {
     *disk = NULL;
     bool sphere = signature && !signature->n_mirrors && !signature->n_crosscaps && !signature->n_handles;
     if (!sphere)
         return cut_surface(mesh, parent, marks, signature ? -1 : 0, disk, error);
-    if (signature->curvature < 0 && marks->n > 3)
+    if (signature->curvature < 0 && marks->n > 3 && cut == ORB_CUT_AUTOMATIC)
         return path_or_graph(mesh, marks, disk, error);
     return cut_path(mesh, marks, disk, error);
 }

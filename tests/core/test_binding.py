@@ -41,6 +41,7 @@ CONSTANTS = {
     "ORB_WEIGHTS_GIVEN": binding.WEIGHTS_GIVEN,
     "ORB_SYMMETRY_PLANE": binding.SYMMETRY_PLANE,
     **{f"ORB_SYMMETRY_{name.upper()}": number for name, number in binding.SYMMETRIES.items()},
+    **{f"ORB_CUT_{name.upper()}": number for name, number in binding.CUTS.items()},
     **{f"ORB_HOLES_{name.upper()}": number for name, number in binding.HOLES.items()},
     **{f"ORB_CHART_{name.upper()}": number for name, number in binding.CHARTS.items()},
 }
