@@ -74,8 +74,8 @@ static orb_status cut_and_glue(orb_workshop *work, orb_error *error) {
     const orb_signature *signature = embedding->surface->signature;
     double start = monitor_clock();
     orb_marks marks = surface_marks(embedding->surface);
-    orb_status status = cut_open(embedding->mesh, signature, embedding->surface->cut, embedding->surface->parent, &marks,
-                                 &work->disk, error);
+    orb_status status = cut_open(embedding->mesh, signature, embedding->surface->cut, embedding->surface->parent,
+                                 &marks, &work->disk, error);
     report->seconds_cut = monitor_clock() - start;
     if (status != ORB_OK)
         return status;
