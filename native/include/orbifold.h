@@ -103,8 +103,8 @@ typedef enum orb_holes {
 /* Which sides the tile gets. Two embeddings have a surface map (orbifold_maps.h) where their cuts correspond. */
 typedef enum orb_cut {
     ORB_CUT_AUTOMATIC = 0, /* a path, or where that is long and the tile may be another polygon, a graph */
-    ORB_CUT_PATH           /* spheres with cones: through the cones in turn, however long that is; other surfaces have
-                              graphs as ever */
+    ORB_CUT_PATH           /* spheres and disks with cones: through the cones in turn, however long that is, on disks
+                              from the first corner that was picked, or else from the boundary; others have graphs */
 } orb_cut;
 
 /* Instead of an orbifold: the boundary of a disk goes to a convex polygon, by arc length, and stays there (Tutte 1963;

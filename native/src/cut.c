@@ -269,6 +269,26 @@ orb_status cut_surface(orb_mesh *mesh, const int32_t *parent, const orb_marks *m
     return status;
 }
 
+/* A disk with cones along a path from its first corner, or from its boundary. */
+static orb_status cut_disk(const orb_mesh *mesh, const orb_signature *signature, const int32_t *parent,
+                           const orb_marks *marks, orb_disk **disk, orb_error *error) {
+    int32_t start = -1, first = signature->n_corners > 0 ? 0 : -1;
+    bool *border = calloc((size_t)mesh->n_vertices + 1, sizeof *border);
+    uint8_t *cut = malloc((size_t)mesh->n_edges + 1);
+    orb_status status = border && cut ? ORB_OK : error_memory(error);
+    if (status == ORB_OK)
+        mesh_find_boundary(mesh, border);
+    while (status == ORB_OK && first >= 0 && !border[marks->vertex[first]])
+        first++;
+    if (status == ORB_OK)
+        status = cut_graph_path(mesh, parent, marks, first, cut, &start, error);
+    if (status == ORB_OK)
+        status = disk_create(mesh, cut, start, marks, disk, error);
+    free(cut);
+    free(border);
+    return status;
+}
+
 /* Half of the disk's circumference. */
 static double cut_length(const orb_disk *disk) {
     double length = 0;
@@ -298,7 +318,10 @@ static orb_status path_or_graph(orb_mesh *mesh, const orb_marks *marks, orb_disk
 orb_status cut_open(orb_mesh *mesh, const orb_signature *signature, orb_cut cut, const int32_t *parent,
                     const orb_marks *marks, orb_disk **disk, orb_error *error) {
     *disk = NULL;
-    bool sphere = signature && !signature->n_mirrors && !signature->n_crosscaps && !signature->n_handles;
+    bool planar = signature && !signature->n_crosscaps && !signature->n_handles;
+    bool sphere = planar && signature->n_mirrors == 0;
+    if (planar && signature->n_mirrors == 1 && signature->n_cones > 0 && cut == ORB_CUT_PATH)
+        return cut_disk(mesh, signature, parent, marks, disk, error);
     if (!sphere)
         return cut_surface(mesh, parent, marks, signature ? -1 : 0, disk, error);
     if (signature->curvature < 0 && marks->n > 3 && cut == ORB_CUT_AUTOMATIC)

@@ -19,7 +19,8 @@ typedef struct worker {
     int32_t *tree;             /* [n_vertices] the edge towards the root; -1 */
     int32_t *heap, *slot;      /* [n_vertices] */
     int32_t n_heap;
-    int32_t *set; /* [n_triangles] union-find */
+    const bool *taken; /* [n_vertices] vertices that paths may end in but not go through; NULL: none */
+    int32_t *set;      /* [n_triangles] union-find */
     candidate *candidates;
 } worker;
 
@@ -123,7 +124,8 @@ static void grow_tree(worker *w, int32_t root) {
     heap_put(w, w->n_heap++, root);
     while (w->n_heap > 0) {
         int32_t v = heap_take(w);
-        for (int32_t k = w->first[v]; k < w->first[v + 1]; k++) {
+        bool through = v == root || !w->taken || !w->taken[v];
+        for (int32_t k = w->first[v]; through && k < w->first[v + 1]; k++) {
             int32_t e = w->incident[k], a = edge_end(w->mesh, e, 0), u = a == v ? edge_end(w->mesh, e, 1) : a;
             if (w->slot[u] == -2 || is_inner(w, e))
                 continue;
@@ -279,5 +281,79 @@ orb_status cut_graph_find(const orb_mesh *mesh, const int32_t *parent, int32_t n
         status = try_roots(&w, find_root(mesh, n_cones, cones), one ? 1 : ROOTS, n_cones, cones, error);
     }
     worker_free(&w);
+    return status;
+}
+
+/* --- a disk along one path --------------------------------------------------------------------------------------- */
+
+/* Cuts along the tree from `to` back to its root. */
+static void cut_back(worker *w, int32_t to, bool *taken) {
+    for (int32_t v = to; w->tree[v] >= 0;) {
+        const int32_t e = w->tree[v], a = edge_end(w->mesh, e, 0);
+        w->cut[e] = 1;
+        taken[v] = true;
+        v = a == v ? edge_end(w->mesh, e, 1) : a;
+    }
+}
+
+static int32_t nearest_on_boundary(const worker *w, const bool *border) {
+    int32_t nearest = -1;
+    for (int32_t v = 0; v < w->mesh->n_vertices; v++)
+        if (border[v] && (nearest < 0 || w->distance[v] < w->distance[nearest]))
+            nearest = v;
+    return nearest;
+}
+
+static orb_status no_path(int32_t from, int32_t to, orb_error *error) {
+    const int32_t ends[2] = {from, to};
+    return error_set_elements(
+        error, ORB_CUT_BLOCKED, ORB_VERTEX, ends, 2, 2,
+        "the cut from vertex %d to the cone at vertex %d would meet the boundary, the cut or another "
+        "cone whatever way it goes along edges: subdivide the mesh, or give the cones in another "
+        "sequence",
+        (int)from, (int)to);
+}
+
+/* `border` and `taken` [n_vertices] */
+static orb_status cut_along(worker *w, const orb_marks *marks, int32_t first, const bool *border, bool *taken,
+                            int32_t *base, orb_error *error) {
+    int32_t at = *base = first < 0 ? -1 : marks->vertex[first];
+    for (int32_t k = 0; k < marks->n; k++)
+        taken[marks->vertex[k]] = true;
+    for (int32_t k = 0; k < marks->n; k++) {
+        const int32_t to = marks->vertex[k];
+        if (border[to])
+            continue;
+        grow_tree(w, at < 0 ? to : at);
+        const int32_t end = at < 0 ? nearest_on_boundary(w, border) : to;
+        if (w->distance[end] == INFINITY)
+            return no_path(at < 0 ? end : at, to, error);
+        *base = *base < 0 ? end : *base;
+        cut_back(w, end, taken);
+        at = to;
+    }
+    return ORB_OK;
+}
+
+orb_status cut_graph_path(const orb_mesh *mesh, const int32_t *parent, const orb_marks *marks, int32_t first,
+                          uint8_t *cut, int32_t *start, orb_error *error) {
+    const size_t n = (size_t)mesh->n_vertices + 1;
+    bool *border = calloc(n, sizeof *border), *taken = calloc(n, sizeof *taken);
+    worker w = {.mesh = mesh, .parent = parent, .cut = cut, .taken = taken};
+    int32_t base = -1;
+    orb_status status = border && taken && worker_allocate(&w) ? ORB_OK : error_memory(error);
+    if (status == ORB_OK) {
+        list_incident_edges(&w);
+        mesh_find_boundary(mesh, border);
+        memcpy(taken, border, n * sizeof *taken);
+        for (int32_t e = 0; e < mesh->n_edges; e++)
+            cut[e] = is_border(mesh, e);
+        status = cut_along(&w, marks, first, border, taken, &base, error);
+    }
+    if (status == ORB_OK)
+        *start = mesh->vertex_halfedge[base];
+    worker_free(&w);
+    free(border);
+    free(taken);
     return status;
 }

@@ -73,6 +73,10 @@ static orb_status differential(orb_overlay *overlay, int32_t triangle, matrix2 *
     const matrix2 on_source = edges_of(source->mesh, piece), on_target = edges_of(target->mesh, spot.sheet.triangle);
     const matrix2 out = times(image_edges(geometry, p, from, middle), inverse(on_source));
     *result = times(times(on_target, inverse(image_edges(geometry, p, to, spot.weight))), out);
+    if (cover->elements[spot.sheet.element].reflects) { /* over a cross-cap: seen from the other side */
+        result->a = -result->a;
+        result->b = -result->b;
+    }
     *area = mesh_triangle_area(source->surface->plain, triangle);
     *there = input >= 0 && determinant(on_source) > 0 && determinant(on_target) > 0;
     return ORB_OK;

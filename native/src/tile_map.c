@@ -49,31 +49,45 @@ static int32_t pick_at(const orb_embedding *embedding, int32_t side) {
     return -1;
 }
 
-/* node[s]: the pick at corner s, or one number for each other node: -1 - node. */
-static void label(const orb_embedding *embedding, int32_t *node) {
-    for (int32_t s = 0; s < embedding->tile->word->n_sides; s++) {
-        const int32_t pick = pick_at(embedding, s);
-        node[s] = pick < 0 ? -1 - embedding->tile->word->node[s] : pick;
-    }
+/* All that a word says of a side, whatever side the word begins with. */
+typedef struct letter {
+    int32_t pick, partner; /* partner: how many sides further on */
+    bool same_way;
+} letter;
+
+static int compare(letter a, letter b) {
+    if (a.pick != b.pick)
+        return a.pick < b.pick ? -1 : 1;
+    if (a.partner != b.partner)
+        return a.partner < b.partner ? -1 : 1;
+    return a.same_way - b.same_way;
 }
 
-/* Whether side s of a is side s + turn of b, with all its features. */
-static bool word_turns(const orb_word *a, const int32_t *label_a, const orb_word *b, const int32_t *label_b,
-                       int32_t turn, int32_t *image) {
-    const int32_t n = a->n_sides;
-    for (int32_t k = 0; k < a->n_nodes; k++)
-        image[k] = -1;
-    for (int32_t s = 0; s < n; s++) {
-        const int32_t t = (s + turn) % n, node = a->node[s];
-        if ((a->partner[s] + turn) % n != b->partner[t] || a->same_way[s] != b->same_way[t])
-            return false;
-        if (a->order[node] != b->order[b->node[t]] || (image[node] >= 0 && image[node] != b->node[t]))
-            return false;
-        if ((label_a[s] >= 0 || label_b[t] >= 0) && label_a[s] != label_b[t])
-            return false;
-        image[node] = b->node[t];
+static void spell(const orb_embedding *embedding, letter *letters) {
+    const orb_word *word = embedding->tile->word;
+    for (int32_t s = 0; s < word->n_sides; s++)
+        letters[s] =
+            (letter){pick_at(embedding, s), (word->partner[s] - s + word->n_sides) % word->n_sides, word->same_way[s]};
+}
+
+/* How the word that begins with letter i compares with that which begins with j of another one. */
+static int compare_from(int32_t n, const letter *a, int32_t i, const letter *b, int32_t j) {
+    for (int32_t k = 0; k < n; k++) {
+        const int order = compare(a[(i + k) % n], b[(j + k) % n]);
+        if (order)
+            return order;
     }
-    return true;
+    return 0;
+}
+
+/* Where the word begins if it is to come first in the dictionary; so turns from one word to another one are those to a
+ * third one and from there, also where several would do. */
+static int32_t first_letter(int32_t n, const letter *letters) {
+    int32_t first = 0;
+    for (int32_t s = 1; s < n; s++)
+        if (compare_from(n, letters, s, letters, first) < 0)
+            first = s;
+    return first;
 }
 
 /* --- tiles ------------------------------------------------------------------------------------------------------- */
@@ -187,24 +201,16 @@ orb_status tile_map_find(const orb_embedding *source, const orb_embedding *targe
         return status;
     if (a->n_sides != b->n_sides || a->n_nodes != b->n_nodes)
         return refuse_words(source, false, error);
-    const size_t n = (size_t)a->n_sides;
-    int32_t *labels = malloc((3 * n + 1) * sizeof *labels);
-    if (!labels)
+    const int32_t n = a->n_sides;
+    letter *from = malloc((2 * (size_t)n + 1) * sizeof *from), *to = from + n;
+    if (!from)
         return error_memory(error);
-    label(source, labels);
-    label(target, labels + n);
-    bool found = false, turns = false;
-    for (int32_t turn = 0; turn < a->n_sides && !(found && !map->affine); turn++) {
-        orb_tile_map trial;
-        if (!word_turns(a, labels, b, labels + n, turn, labels + 2 * n))
-            continue;
-        turns = true;
-        if (!fit(source->tile, target->tile, turn, &trial))
-            continue;
-        if (!found || cabs(trial.b) * cabs(map->a) < 0.999 * cabs(map->b) * cabs(trial.a))
-            *map = trial;
-        found = true;
-    }
-    free(labels);
-    return found ? ORB_OK : refuse_words(source, turns, error);
+    spell(source, from);
+    spell(target, to);
+    const int32_t start = first_letter(n, from), end = first_letter(n, to);
+    const bool same = compare_from(n, from, start, to, end) == 0;
+    free(from);
+    if (!same || !fit(source->tile, target->tile, (end - start + n) % n, map))
+        return refuse_words(source, same, error);
+    return ORB_OK;
 }
