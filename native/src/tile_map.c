@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "lattice.h"
+
 static const double same_corner = 1e-8;  /* distance */
 static const double same_element = 1e-4; /* of the origin's images, which may lie far out */
 
@@ -143,6 +145,34 @@ static bool fit(const orb_tile *a, const orb_tile *b, int32_t turn, orb_tile_map
     return same;
 }
 
+/* --- tori -------------------------------------------------------------------------------------------------------- */
+
+static bool is_torus(const orb_embedding *embedding) {
+    const orb_signature *s = embedding->surface->signature;
+    return s && s->n_handles == 1 && s->n_cones + s->n_mirrors + s->n_crosscaps == 0;
+}
+
+/* No landmark says which loop of one torus goes to which of the other one: the shortest translations go to one another,
+ * whatever the cuts are. */
+static orb_status fit_tori(const orb_tile *a, const orb_tile *b, orb_tile_map *map, orb_error *error) {
+    double complex u[2], w[2], axis;
+    int rotations;
+    *map = (orb_tile_map){.geometry = a->geometry, .affine = true};
+    orb_status status = lattice_create(a, u, &rotations, &axis, error);
+    if (status == ORB_OK)
+        status = lattice_create(b, w, &rotations, &axis, error);
+    if (status != ORB_OK)
+        return status;
+    if (a->word->n_sides == b->word->n_sides && fit(a, b, 0, map) && map->identity)
+        return ORB_OK;
+    const double complex determinant = u[0] * conj(u[1]) - conj(u[0]) * u[1];
+    *map = (orb_tile_map){.geometry = a->geometry, .affine = true};
+    map->a = (w[0] * conj(u[1]) - w[1] * conj(u[0])) / determinant;
+    map->b = (u[0] * w[1] - u[1] * w[0]) / determinant;
+    map->c = b->corners[0].z - map->a * a->corners[0].z - map->b * conj(a->corners[0].z);
+    return ORB_OK;
+}
+
 /* --- what does not correspond ------------------------------------------------------------------------------------ */
 
 static orb_status check_features(const orb_embedding *source, const orb_embedding *target, orb_error *error) {
@@ -199,6 +229,8 @@ orb_status tile_map_find(const orb_embedding *source, const orb_embedding *targe
     orb_status status = check_features(source, target, error);
     if (status != ORB_OK)
         return status;
+    if (is_torus(source))
+        return fit_tori(source->tile, target->tile, map, error);
     if (a->n_sides != b->n_sides || a->n_nodes != b->n_nodes)
         return refuse_words(source, false, error);
     const int32_t n = a->n_sides;
