@@ -6,7 +6,7 @@
  *
  * Two embeddings in one orbifold compose to a map of one mesh onto the other: continuous, bijective, without seams, and
  * it takes each cone, a landmark, to the other mesh's cone in the same place of the sequence (docs/mathematics.md,
- * section 9; 2015, section 6.2; 2016, section 7). Several meshes embedded alike have maps between any two, and these are
+ * section 10; 2015, section 6.2; 2016, section 7). Several meshes embedded alike have maps between any two, and these are
  * consistent: b -> c after a -> b is a -> c.
  *
  * In what way the map winds around the landmarks, its homotopy class, follows from the cuts: they go to one another. Up to
