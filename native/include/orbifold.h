@@ -55,7 +55,7 @@ typedef enum orb_status {
     ORB_NOT_CONVERGED,            /* elements: vertices, where any stand out */
     ORB_CERTIFICATE_FAILED,       /* elements: flipped triangles, or the vertices whose angles are wrong */
     ORB_LINEAR_SOLVER,            /* CHOLMOD reported a fault that is none of the above */
-    ORB_NO_CORRESPONDENCE,        /* two embeddings whose tiles or cones do not correspond; elements: the source's cones */
+    ORB_NO_CORRESPONDENCE,        /* two embeddings whose tiles or cones do not match; elements: the source's cones */
     ORB_POINT_NOT_FOUND           /* the target has no triangle at a point; elements: the source's vertices, or none */
 } orb_status;
 

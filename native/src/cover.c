@@ -256,7 +256,7 @@ orb_status cover_walk(orb_cover *cover, orb_point p, bool boundary, orb_spot *sp
 
 /* --- set up ------------------------------------------------------------------------------------------------------ */
 
-/* A part of the radius of a disk about the origin that lies in the tile: y is sin_K of the distance from the real axis. */
+/* A part of the radius of a disk about the origin that lies in the tile: y is sin_K of the distance from the x axis. */
 static double inner_radius(const orb_tile *tile) {
     double least = 1;
     for (int32_t s = 0; s < tile->word->n_sides; s++) {

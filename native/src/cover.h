@@ -1,8 +1,8 @@
 /* Walking in the universal cover of an embedding. SPDX-License-Identifier: GPL-3.0-or-later
  *
- * A sheet is a triangle and the group element that takes the source's layout to where that triangle is laid out. Across a
- * seam the element changes. A product of elements that was met before is that element to the last digit, so that going
- * round by different ways does not add up rounding. */
+ * A sheet is a triangle and the group element that takes the source's layout to where that triangle is laid out. Across
+ * a seam the element changes. A product of elements that was met before is that element to the last digit, so that
+ * going round by different ways does not add up rounding. */
 #ifndef ORB_COVER_H
 #define ORB_COVER_H
 
@@ -44,11 +44,11 @@ typedef struct orb_cover {
 orb_status cover_create(const orb_embedding *source, const orb_embedding *target, orb_cover *cover, orb_error *error);
 void cover_clear(orb_cover *cover);
 
-/* From a sheet on the source's triangle h / 3 to that of the triangle across its half-edge h: only the element changes. */
+/* From a sheet on the source's triangle h / 3 to that of the triangle across h: only the element changes. */
 orb_status cover_cross_source(orb_cover *cover, int32_t h, int32_t *element, orb_error *error);
 
-/* Walks from spot->sheet to the triangle that p, on the source's layout in that sheet, lies in. *found: false if there is
- * none, beyond rounding. p goes onto the target's boundary where `boundary`. Error: ORB_OUT_OF_MEMORY. */
+/* Walks from spot->sheet to the triangle that p, on the source's layout in that sheet, lies in. *found: false if there
+ * is none, beyond rounding. p goes onto the target's boundary where `boundary`. Error: ORB_OUT_OF_MEMORY. */
 orb_status cover_walk(orb_cover *cover, orb_point p, bool boundary, orb_spot *spot, bool *found, orb_error *error);
 
 #endif

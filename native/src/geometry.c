@@ -123,8 +123,9 @@ double geometry_triangle_area(const orb_geometry *geometry, double complex s, do
     return 2 * atan2(cimag(c), 1 + geometry->K * creal(c)); /* the angle excess, or defect, halved: arg(1 + K c) / K */
 }
 
-/* With t = toward(p, corner) = D / d the weights are (1 + K |t_j|^2) Im(conj(t_k) t_l), up to one factor. As |d|^2 + K |D|^2
- * = (1 + K |p|^2) (1 + K |corner|^2), nothing is divided by a d that may vanish, and nothing cancels. */
+/* With t = toward(p, corner) = D / d the weights are (1 + K |t_j|^2) Im(conj(t_k) t_l), up to one factor. As
+ * |d|^2 + K |D|^2 = (1 + K |p|^2) (1 + K |corner|^2), nothing is divided by a d that may vanish, and nothing cancels.
+ * */
 void geometry_locate(const orb_geometry *geometry, orb_point p, const orb_point corners[3], double weight[3],
                      double sine[3]) {
     double complex toward[3]; /* D conj(d), that is t |d|^2 */

@@ -131,9 +131,8 @@ static bool fit(const orb_tile *a, const orb_tile *b, int32_t turn, orb_tile_map
     if (geometry_has_translations(a->geometry)) {
         if (!fit_affine(a, b, turn, map))
             return false;
-    } else {
-        const int32_t end = (1 + turn) % n;
-        map->isometry = isometry_pairing(a->geometry, a->corners[0], a->corners[1], b->corners[turn], b->corners[end]);
+    } else { /* by sides, not corners: the two of a lune are antipodal */
+        map->isometry = isometry_compose(a->geometry, b->lines[turn], isometry_inverse(a->lines[0]));
     }
     for (int32_t s = 0; s < n; s++)
         map->residual = fmax(map->residual, geometry_distance(a->geometry, tile_map_point(map, a->corners[s]),

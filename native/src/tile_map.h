@@ -16,8 +16,9 @@ typedef struct orb_tile_map {
     double residual;       /* the farthest that an image of a corner is from its counterpart */
 } orb_tile_map;
 
-/* The cones, in the sequence in which they were picked, must correspond. Where several ways to turn one word onto the other
- * would do, one is chosen so that maps between three meshes agree. Error: ORB_NO_CORRESPONDENCE, ORB_OUT_OF_MEMORY. */
+/* The cones, in the sequence in which they were picked, must correspond. Where several ways to turn one word onto the
+ * other would do, one is chosen so that maps between three meshes agree. Error: ORB_NO_CORRESPONDENCE,
+ * ORB_OUT_OF_MEMORY. */
 orb_status tile_map_find(const orb_embedding *source, const orb_embedding *target, orb_tile_map *map, orb_error *error);
 
 orb_point tile_map_point(const orb_tile_map *map, orb_point p);

@@ -2,12 +2,12 @@
 """Maps from mesh to mesh: identities and inverses on every family, pairs with known answers, refusals that help."""
 
 import numpy as np
+import picks
 import pytest
 import shapes
 from families import EUCLIDEAN, HYPERBOLIC, SPHERICAL, cases, mesh_named
 from conway import features
 from meshes import far_apart, icosphere, shared_file, subdivided
-from picks import inside
 from surfaces import picks_for
 
 import core
@@ -58,7 +58,8 @@ def test_maps_between_two_surfaces_are_inverse(signature):
     topology = features(signature).topology
     (_, name), (_, other) = cases([signature])
     mesh, second = mesh_named(topology, name), mesh_named(topology, other)
-    picked, wanted = picks_for(mesh, signature), picks_for(second, signature)
+    picked = picks_for(mesh, signature)
+    wanted = picks.picks_for(*second, features(signature), start=0.6)  # the boundary's first vertex is elsewhere
     a, b = embedded(mesh, signature, picked), embedded(second, signature, wanted)
     assert there_and_back(a, b) < 1e-9 and there_and_back(b, a) < 1e-9
     a_to_b = core.SurfaceMap(a, b)
@@ -149,7 +150,8 @@ def test_holes_and_loose_vertices_have_no_image():
     loose = (np.concatenate([mesh[0], [[0, 0, 0]]]), mesh[1])
     a, b = embedded(loose, "442", picked), embedded(open_mesh, "442", picked, holes="fill")
     a_to_b = core.SurfaceMap(a, b)
-    assert a_to_b.spots[0][-1] == -1 and np.isnan(a_to_b.points()[-1]).all() and not np.isnan(a_to_b.points()[:-1]).all()
+    nowhere = np.isnan(a_to_b.points()).all(1)
+    assert a_to_b.spots[0][-1] == -1 and nowhere[-1] and nowhere.sum() < 5
     triangles, barycentric = a_to_b.evaluate([0, 5], MIDDLE.repeat(2, 0))
     assert triangles[0] == -1 and (barycentric[0] == 0).all() and triangles[1] >= 0
     assert core.SurfaceMap(b, a).evaluate(triangles, barycentric)[0][0] == -1
@@ -173,7 +175,7 @@ def test_a_short_walk_is_found():
 def test_refusals_say_what_to_do():
     mesh = icosphere(3)
     picked = far_apart(*mesh, 5)
-    erratic = inside(*mesh, 14)
+    erratic = picks.inside(*mesh, 14)
     random = np.random.default_rng(1).permutation(erratic)
 
     def refusal(a, b):
