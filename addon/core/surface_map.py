@@ -106,10 +106,11 @@ class SurfaceMap:
         """(n, 3) where each given vertex of the source is in the target's space; NaN where it is nowhere."""
         return self.transfer(self.target.vertices[: self.target.n_input_vertices])
 
-    def transfer(self, values: ArrayLike) -> np.ndarray:
+    def transfer(self, values: ArrayLike, corners: bool = False) -> np.ndarray:
         """(n, ...) what the target has where the source's vertices are, interpolated; `values` (n_target, ...) is an
-        attribute of the target's given vertices. NaN where a vertex is nowhere."""
-        return interpolated(self.target, values, *self.spots)
+        attribute of the target's given vertices, or where `corners` of its given triangles' corners, (m_target, 3, ...).
+        NaN where a vertex is nowhere."""
+        return interpolated(self.target, values, *self.spots, corners)
 
     @cached_property
     def distortion(self) -> MapDistortion:
@@ -121,15 +122,21 @@ class SurfaceMap:
         )
 
 
-def interpolated(result: Result, values: ArrayLike, triangles: np.ndarray, barycentric: np.ndarray) -> np.ndarray:
-    """(p, ...) an attribute (n, ...) of a mesh's given vertices at points of it; NaN in the triangle -1."""
+def interpolated(
+    result: Result, values: ArrayLike, triangles: np.ndarray, barycentric: np.ndarray, corners: bool = False
+) -> np.ndarray:
+    """(p, ...) an attribute of a mesh at points of it: (n, ...) of its given vertices, or where `corners` (m, 3, ...) of
+    its given triangles' corners. NaN in the triangle -1."""
     attribute = np.asarray(values, np.float64)
-    if attribute.ndim == 0 or len(attribute) != result.n_input_vertices:
+    n_rows, what = (len(result.input_corners), "triangles") if corners else (result.n_input_vertices, "vertices")
+    if attribute.shape[:1] != (n_rows,) or (corners and attribute.shape[1:2] != (3,)):
         raise OrbifoldError(
-            "ORB_BAD_ARGUMENT",
-            f"the values have the shape {attribute.shape}; give one row for each of {result.n_input_vertices} vertices",
+            "ORB_BAD_ARGUMENT", f"the values have the shape {attribute.shape}; give one row for each of {n_rows} {what}"
         )
-    corners = result.triangles.ravel()[result.input_corners[triangles]]  # (p, 3); of -1 any
-    mixed = np.einsum("pc,pc...->p...", barycentric, attribute[corners])
+    if corners:
+        around = attribute[triangles]  # (p, 3, ...); of -1 any
+    else:
+        around = attribute[result.triangles.ravel()[result.input_corners[triangles]]]
+    mixed = np.einsum("pc,pc...->p...", barycentric, around)
     mixed[triangles < 0] = np.nan
     return mixed

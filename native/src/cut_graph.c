@@ -306,12 +306,11 @@ static int32_t nearest_on_boundary(const worker *w, const bool *border) {
 
 static orb_status no_path(int32_t from, int32_t to, orb_error *error) {
     const int32_t ends[2] = {from, to};
-    return error_set_elements(
-        error, ORB_CUT_BLOCKED, ORB_VERTEX, ends, 2, 2,
-        "the cut from vertex %d to the cone at vertex %d would meet the boundary, the cut or another "
-        "cone whatever way it goes along edges: subdivide the mesh, or give the cones in another "
-        "sequence",
-        (int)from, (int)to);
+    return error_set_elements(error, ORB_CUT_BLOCKED, ORB_VERTEX, ends, 2, 2,
+                              "the cut from vertex %d to the cone at vertex %d would meet the boundary, the cut or "
+                              "another cone whatever way it goes along edges: subdivide the mesh, or give cones and "
+                              "corners in another sequence",
+                              (int)from, (int)to);
 }
 
 /* `border` and `taken` [n_vertices] */

@@ -90,6 +90,17 @@ def test_nearly_the_same_surface_is_mapped_nearly_isometrically(signature):
     assert moved.max() < 0.15 and moved.mean() < 0.05  # edges are 0.15 long
 
 
+@pytest.mark.parametrize("signature", ["442", "632", "432", "237"])
+def test_mirror_image_has_a_nearly_conformal_map(signature):
+    """It is no isometry, as that turns orientation over; with three landmarks there is a conformal map all the same."""
+    vertices, triangles = mesh_named((0, 0, 0), "ellipsoid")
+    picked = picks_for((vertices, triangles), signature)
+    a = embedded((vertices, triangles), signature, picked, weights="conformal")
+    b = embedded((vertices * [-1, 1, 1], triangles[:, ::-1]), signature, picked, weights="conformal")
+    assert there_and_back(a, b) < 1e-9
+    assert 1 <= core.SurfaceMap(a, b).distortion.quasi_conformal_mean < 1.12
+
+
 @pytest.mark.parametrize("weights", ["cotan", "uniform"])
 def test_random_landmarks(weights):
     """Any number in the walk of the first mesh, on meshes that have nothing else in common."""
@@ -132,6 +143,7 @@ def test_attributes_are_transferred():
     both = a_to_b.transfer(np.stack([other[0], 2 * other[0]], 1))
     assert both.shape == (len(mesh[0]), 2, 3) and np.allclose(both[:, 1], 2 * points)
     assert np.abs(np.linalg.norm(points, axis=1) - 1).max() < 0.02
+    assert np.allclose(a_to_b.transfer(other[0][other[1]], corners=True), points)
     none = a_to_b.evaluate(np.zeros(0, int), np.zeros((0, 3)))
     assert none[0].shape == (0,) and none[1].shape == (0, 3)
     with pytest.raises(core.OrbifoldError, match="one row for each of"):
