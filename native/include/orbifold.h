@@ -104,7 +104,7 @@ typedef enum orb_holes {
 typedef enum orb_cut {
     ORB_CUT_AUTOMATIC = 0, /* a path, or where that is long and the tile may be another polygon, a graph */
     ORB_CUT_PATH           /* spheres and disks with cones: through the cones in turn, however long that is, on disks
-                              from the first corner that was picked, or else from the boundary; others have graphs */
+                              from the side after the first corner that was picked; other surfaces have graphs */
 } orb_cut;
 
 /* Instead of an orbifold: the boundary of a disk goes to a convex polygon, by arc length, and stays there (Tutte 1963;

@@ -269,23 +269,15 @@ orb_status cut_surface(orb_mesh *mesh, const int32_t *parent, const orb_marks *m
     return status;
 }
 
-/* A disk with cones along a path from its first corner, or from its boundary. */
-static orb_status cut_disk(const orb_mesh *mesh, const orb_signature *signature, const int32_t *parent,
-                           const orb_marks *marks, orb_disk **disk, orb_error *error) {
-    int32_t start = -1, first = signature->n_corners > 0 ? 0 : -1;
-    bool *border = calloc((size_t)mesh->n_vertices + 1, sizeof *border);
+/* A disk with cones along a path from its boundary. */
+static orb_status cut_disk(const orb_mesh *mesh, const int32_t *parent, const orb_marks *marks, orb_disk **disk,
+                           orb_error *error) {
+    int32_t start = -1;
     uint8_t *cut = malloc((size_t)mesh->n_edges + 1);
-    orb_status status = border && cut ? ORB_OK : error_memory(error);
-    if (status == ORB_OK)
-        mesh_find_boundary(mesh, border);
-    while (status == ORB_OK && first >= 0 && !border[marks->vertex[first]])
-        first++;
-    if (status == ORB_OK)
-        status = cut_graph_path(mesh, parent, marks, first, cut, &start, error);
+    orb_status status = cut ? cut_graph_path(mesh, parent, marks, cut, &start, error) : error_memory(error);
     if (status == ORB_OK)
         status = disk_create(mesh, cut, start, marks, disk, error);
     free(cut);
-    free(border);
     return status;
 }
 
@@ -321,7 +313,7 @@ orb_status cut_open(orb_mesh *mesh, const orb_signature *signature, orb_cut cut,
     bool planar = signature && !signature->n_crosscaps && !signature->n_handles;
     bool sphere = planar && signature->n_mirrors == 0;
     if (planar && signature->n_mirrors == 1 && signature->n_cones > 0 && cut == ORB_CUT_PATH)
-        return cut_disk(mesh, signature, parent, marks, disk, error);
+        return cut_disk(mesh, parent, marks, disk, error);
     if (!sphere)
         return cut_surface(mesh, parent, marks, signature ? -1 : 0, disk, error);
     if (signature->curvature < 0 && marks->n > 3 && cut == ORB_CUT_AUTOMATIC)

@@ -296,63 +296,85 @@ static void cut_back(worker *w, int32_t to, bool *taken) {
     }
 }
 
-static int32_t nearest_on_boundary(const worker *w, const bool *border) {
+/* Of the vertices with foot[v], the nearest. */
+static int32_t nearest_foot(const worker *w, const bool *foot) {
     int32_t nearest = -1;
     for (int32_t v = 0; v < w->mesh->n_vertices; v++)
-        if (border[v] && (nearest < 0 || w->distance[v] < w->distance[nearest]))
+        if (foot[v] && w->distance[v] < INFINITY && (nearest < 0 || w->distance[v] < w->distance[nearest]))
             nearest = v;
     return nearest;
 }
 
-static orb_status no_path(int32_t from, int32_t to, orb_error *error) {
-    const int32_t ends[2] = {from, to};
-    return error_set_elements(error, ORB_CUT_BLOCKED, ORB_VERTEX, ends, 2, 2,
-                              "the cut from vertex %d to the cone at vertex %d would meet the boundary, the cut or "
-                              "another cone whatever way it goes along edges: subdivide the mesh, or give cones and "
-                              "corners in another sequence",
-                              (int)from, (int)to);
+/* foot[v]: whether v is within the side that follows the first of the marks on the boundary, or without one on the
+ * boundary at all. */
+static void find_feet(const orb_mesh *mesh, const orb_marks *marks, const bool *border, const bool *taken, bool *foot) {
+    int32_t first = 0;
+    while (first < marks->n && !border[marks->vertex[first]])
+        first++;
+    memcpy(foot, border, (size_t)mesh->n_vertices * sizeof *foot);
+    if (first == marks->n)
+        return;
+    memset(foot, 0, (size_t)mesh->n_vertices * sizeof *foot);
+    int32_t v = marks->vertex[first];
+    for (v = halfedge_to(mesh, mesh->vertex_halfedge[v]); !taken[v]; v = halfedge_to(mesh, mesh->vertex_halfedge[v]))
+        foot[v] = true;
 }
 
-/* `border` and `taken` [n_vertices] */
-static orb_status cut_along(worker *w, const orb_marks *marks, int32_t first, const bool *border, bool *taken,
+/* `from` -1: from the boundary. */
+static orb_status no_path(int32_t from, int32_t to, orb_error *error) {
+    const int32_t ends[2] = {to, from};
+    return error_set_elements(
+        error, ORB_CUT_BLOCKED, ORB_VERTEX, ends, from < 0 ? 1 : 2, from < 0 ? 1 : 2,
+        "the cut to the cone at vertex %d would meet the boundary, itself or another cone whatever "
+        "way it goes along edges: subdivide the mesh, or give the cones in another sequence",
+        (int)to);
+}
+
+/* *base: where the path leaves the boundary. `border`, `taken` (the marks), `foot` [n_vertices] */
+static orb_status cut_along(worker *w, const orb_marks *marks, const bool *border, bool *taken, const bool *foot,
                             int32_t *base, orb_error *error) {
-    int32_t at = *base = first < 0 ? -1 : marks->vertex[first];
-    for (int32_t k = 0; k < marks->n; k++)
-        taken[marks->vertex[k]] = true;
+    int32_t at = -1;
+    for (int32_t v = 0; v < w->mesh->n_vertices; v++)
+        taken[v] = taken[v] || border[v];
     for (int32_t k = 0; k < marks->n; k++) {
-        const int32_t to = marks->vertex[k];
+        int32_t to = marks->vertex[k], end = to;
         if (border[to])
             continue;
         grow_tree(w, at < 0 ? to : at);
-        const int32_t end = at < 0 ? nearest_on_boundary(w, border) : to;
-        if (w->distance[end] == INFINITY)
-            return no_path(at < 0 ? end : at, to, error);
-        *base = *base < 0 ? end : *base;
+        if (at < 0) {
+            end = nearest_foot(w, foot);
+            *base = end = end < 0 ? nearest_foot(w, border) : end; /* a side may be one edge: then from anywhere */
+        }
+        if (end < 0 || w->distance[end] == INFINITY)
+            return no_path(at, to, error);
         cut_back(w, end, taken);
         at = to;
     }
     return ORB_OK;
 }
 
-orb_status cut_graph_path(const orb_mesh *mesh, const int32_t *parent, const orb_marks *marks, int32_t first,
-                          uint8_t *cut, int32_t *start, orb_error *error) {
+orb_status cut_graph_path(const orb_mesh *mesh, const int32_t *parent, const orb_marks *marks, uint8_t *cut,
+                          int32_t *start, orb_error *error) {
     const size_t n = (size_t)mesh->n_vertices + 1;
-    bool *border = calloc(n, sizeof *border), *taken = calloc(n, sizeof *taken);
+    bool *border = calloc(n, sizeof *border), *taken = calloc(n, sizeof *taken), *foot = calloc(n, sizeof *foot);
     worker w = {.mesh = mesh, .parent = parent, .cut = cut, .taken = taken};
     int32_t base = -1;
-    orb_status status = border && taken && worker_allocate(&w) ? ORB_OK : error_memory(error);
+    orb_status status = border && taken && foot && worker_allocate(&w) ? ORB_OK : error_memory(error);
     if (status == ORB_OK) {
         list_incident_edges(&w);
         mesh_find_boundary(mesh, border);
-        memcpy(taken, border, n * sizeof *taken);
+        for (int32_t k = 0; k < marks->n; k++)
+            taken[marks->vertex[k]] = true;
+        find_feet(mesh, marks, border, taken, foot);
         for (int32_t e = 0; e < mesh->n_edges; e++)
             cut[e] = is_border(mesh, e);
-        status = cut_along(&w, marks, first, border, taken, &base, error);
+        status = cut_along(&w, marks, border, taken, foot, &base, error);
     }
     if (status == ORB_OK)
         *start = mesh->vertex_halfedge[base];
     worker_free(&w);
     free(border);
     free(taken);
+    free(foot);
     return status;
 }

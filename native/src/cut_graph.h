@@ -13,11 +13,11 @@
 orb_status cut_graph_find(const orb_mesh *mesh, const int32_t *parent, int32_t n_cones, const int32_t *cones,
                           uint8_t *cut, orb_error *error);
 
-/* The same for a disk cut along one path: from the mark `first` on the boundary, or if that is -1 from where this is
- * nearest, through the marks inside in turn. *start: the half-edge along the boundary that leaves the path's first
- * vertex. Paths avoid one another, the boundary and other marks; ORB_CUT_BLOCKED names two marks that none joins. O(k n
- * log n). */
-orb_status cut_graph_path(const orb_mesh *mesh, const int32_t *parent, const orb_marks *marks, int32_t first,
-                          uint8_t *cut, int32_t *start, orb_error *error);
+/* The same for an oriented disk cut along one path through the marks inside in turn. It starts within the side that
+ * follows the first mark on the boundary, where that is nearest; if there is none, or no vertex in it, anywhere on the
+ * boundary. *start: the half-edge along the boundary that leaves the path's first vertex. Paths avoid one another, the
+ * boundary and marks; ORB_CUT_BLOCKED names two marks that none joins. O(k n log n). */
+orb_status cut_graph_path(const orb_mesh *mesh, const int32_t *parent, const orb_marks *marks, uint8_t *cut,
+                          int32_t *start, orb_error *error);
 
 #endif
