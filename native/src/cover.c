@@ -222,7 +222,7 @@ static int way_out(const orb_mesh *mesh, const sight *s, orb_sheet sheet, int64_
 static bool nearly_inside(const orb_cover *cover, const sight *s) {
     const double most = tolerance(cover, s);
     for (int c = 0; c < 3; c++)
-        if (s->sine[c] < -touching && !(distance_from(cover, s, c) < most))
+        if (!(s->sine[c] >= -touching) && !(distance_from(cover, s, c) < most)) /* also of what is no number */
             return false;
     return true;
 }

@@ -141,7 +141,7 @@ void geometry_locate(const orb_geometry *geometry, orb_point p, const orb_point 
     for (int k = 0; k < 3; k++) {
         int next = (k + 1) % 3, last = (k + 2) % 3;
         double cross = cimag(conj(toward[next]) * toward[last]), both = size[next] * size[last];
-        sine[k] = both > 0 ? cross / both : 0;
+        sine[k] = both == 0 ? 0 : cross / both; /* what is no number stays none */
         weight[k] *= cross;
         total += weight[k];
         largest = fmax(largest, fabs(weight[k]));

@@ -493,6 +493,42 @@ TEST(refusals_say_what_to_do) {
     sample_free(&mesh);
 }
 
+/* What is nowhere on the target is named, not put where it is not. */
+TEST(points_that_are_not_found_are_named) {
+    static const int32_t corners[] = {0, 1, 2};
+    sample_mesh mesh = sample_triangle(pi / 4, pi / 4, 4);
+    orb_embedding *a = NULL, *b = NULL;
+    REQUIRE(embed_along(&mesh, "*442", 3, corners, ORB_WEIGHTS_COTANGENT, 0.01, &a) == ORB_OK);
+    REQUIRE(embed_along(&mesh, "*442", 3, corners, ORB_WEIGHTS_COTANGENT, 0.01, &b) == ORB_OK);
+    bool *border = border_sides(&mesh);
+    int32_t on_mirror = 0, inside = 3;
+    while (!border[on_mirror] || mesh.triangles[on_mirror] < 3)
+        on_mirror++;
+    on_mirror = mesh.triangles[on_mirror];
+    for (int32_t h = 0; h < 3 * mesh.n_triangles; h++)
+        if (border[h] && mesh.triangles[h] == inside) {
+            inside++;
+            h = -1;
+        }
+    const struct {
+        int32_t vertex;
+        double complex place;
+    } wrong[] = {{on_mirror, 10}, {inside, 10}, {inside, NAN}, {on_mirror, b->placed[inside].z}};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        const orb_point kept = a->placed[wrong[i].vertex];
+        a->placed[wrong[i].vertex] = point_of(wrong[i].place);
+        mapped m = map_vertices(a, b);
+        CHECK(m.status == ORB_POINT_NOT_FOUND);
+        CHECK(m.error.element == ORB_VERTEX && m.error.n_elements == 1 && m.error.elements[0] == wrong[i].vertex);
+        mapped_free(&m);
+        a->placed[wrong[i].vertex] = kept;
+    }
+    free(border);
+    orb_embedding_free(a);
+    orb_embedding_free(b);
+    sample_free(&mesh);
+}
+
 /* Corners that run the other way round would turn the map over. */
 TEST(corners_the_other_way_round_are_refused) {
     sample_mesh mesh = sample_rectangle(1, 1, 5, 5);
