@@ -9,20 +9,11 @@ import bpy
 import numpy as np
 
 sys.path.insert(0, os.path.dirname(__file__))
-from harness import blob, edit_mode, enable, object_mode, part, set_cones  # noqa: E402
+from harness import blob, edit_mode, enable, object_mode, part, set_cones, uv_of  # noqa: E402
 from windowed import areas, drive, in_view, photograph, press, region_of, show_tab, window  # noqa: E402
 
 picture, out = sys.argv[-2:]
 seen = {}
-
-
-def uv_of(obj):
-    """(loops, 2) of the map Orbifold, in edit mode."""
-    import bmesh
-
-    bm = bmesh.from_edit_mesh(obj.data)
-    layer = bm.loops.layers.uv["Orbifold"]
-    return np.array([loop[layer].uv[:] for face in bm.faces for loop in face.loops])
 
 
 def pixels():
