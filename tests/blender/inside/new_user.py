@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """In a real window, as somebody works who has just got the zip: by clicks and keys, but where a comment says otherwise.
-Arguments: the beginning of the screenshots' names or -, JSON, the zip."""
+Arguments: the zip, the beginning of the screenshots' names or -, JSON."""
 
 import os
 import sys
@@ -13,11 +13,11 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 sys.path.insert(0, os.path.dirname(__file__))
 from harness import blob, enable, far_among, install, module_name, uv_of  # noqa: E402
 from windowed import (  # noqa: E402
-    areas, click_at, drive, find_button, in_view, move_to, photograph, press, region_of, reports, show_tab, to_middle,
-    type_in, window,
+    areas, click_at, drive, find_button, in_view, move_into, photographed, press, region_of, reports, show_info, show_tab,
+    type_in,
 )
 
-picture, out, package = sys.argv[-3:]
+package, picture, out = sys.argv[-3:]
 seen = {}
 TASK = "Orbifold Unwrap"
 
@@ -38,8 +38,7 @@ def steps():
     install(package)
     enable()
     seen["enabled"] = module_name() in bpy.context.preferences.addons
-    areas("DOPESHEET_EDITOR")[0].ui_type = "INFO"
-    yield
+    yield from show_info()
     blob(4)
     picks = yield from picked_by_clicks()
     yield from press_button("mesh.orbifold_add_cones")
@@ -55,7 +54,7 @@ def steps():
 
 def key(name, wanted, **held):
     """Press a key in the 3D view, and wait for what it does."""
-    to_middle()
+    move_into()
     yield
     press(name, **held)
     yield wanted
@@ -99,6 +98,7 @@ def unwrapped():
     yield lambda: "certified" in reports()
     seen["mode"] = the_object().mode
     seen["report"] = [line for line in reports().splitlines() if "certified" in line]
+    yield from photographed(picture, "pressed")
     seen["redo_panel"] = bpy.context.window_manager.operators[-1].bl_idname
 
 
@@ -113,7 +113,6 @@ def undone_and_done_again():
 
 def beside_it():
     """The layout in a UV editor beside the 3D view."""
-    yield from photographed("pressed")
     yield from key("A", lambda: the_object().data.total_vert_sel > 4)
     with in_view():
         bpy.ops.screen.area_split(direction="VERTICAL", factor=0.5)
@@ -124,20 +123,13 @@ def beside_it():
         return
     for kind, panel in (("VIEW_3D", "VIEW3D_PT_orbifold"), ("IMAGE_EDITOR", "IMAGE_PT_orbifold")):
         yield from show_tab(kind, panel)
-    yield from photographed("sidebars")
+    yield from photographed(picture, "sidebars")
     for kind in ("VIEW_3D", "IMAGE_EDITOR"):
         areas(kind)[0].spaces.active.show_region_ui = False
-        to_middle(kind)
+        move_into(kind)
         yield
         press("HOME")
-    yield from photographed("beside")
-
-
-def photographed(name):
-    if picture != "-":
-        for _ in range(20):
-            yield
-        photograph(f"{picture}-{name}.png")
+    yield from photographed(picture, "beside")
 
 
 def searched():
@@ -155,18 +147,20 @@ def escaped():
     yield from key("A", lambda: the_object().data.total_vert_sel > 4)
     with in_view():
         bpy.ops.mesh.subdivide(number_cuts=15)
-    the_object().update_from_editmode()
-    yield
+    yield from key("TAB", lambda: the_object().mode == "OBJECT")
     seen["vertices"] = len(the_object().data.vertices)
     before, ended = uv_map(), reports().count("cancelled")
     yield from press_button("uv.orbifold_unwrap")
     press("ESC")
     yield lambda: reports().count("cancelled") > ended
     seen["uv_kept"] = bool(np.array_equal(uv_map(), before))
+    ended = reports().count("certified")
+    yield from press_button("uv.orbifold_unwrap")
+    yield lambda: reports().count("certified") > ended
+    seen["uv_new"] = not np.array_equal(uv_map(), before)
 
 
 def saved_and_opened():
-    yield from key("TAB", lambda: the_object().mode == "OBJECT")
     name, picked, map_before = the_object().name, cones(), uv_map()
     the_object().data.orbifold.keep_away = "Face"
     bpy.context.scene.orbifold_view.show_cut = False

@@ -10,7 +10,7 @@ import numpy as np
 
 sys.path.insert(0, os.path.dirname(__file__))
 from harness import blob, edit_mode, enable, object_mode, part, set_cones, uv_of  # noqa: E402
-from windowed import areas, drive, in_view, photograph, press, region_of, show_tab, window  # noqa: E402
+from windowed import areas, drive, in_view, photographed, press, region_of, show_tab, window  # noqa: E402
 
 picture, out = sys.argv[-2:]
 seen = {}
@@ -38,12 +38,6 @@ def pause(ticks=20):
         yield
 
 
-def photographed(name):
-    yield from pause()
-    if picture != "-":
-        photograph(f"{picture}-{name}.png")
-
-
 def steps():
     obj = blob(5)
     set_cones(obj, "442")
@@ -52,7 +46,8 @@ def steps():
         bpy.ops.view3d.view_axis(type="RIGHT")
         bpy.ops.view3d.view_selected()
         bpy.ops.object.select_all(action="DESELECT")
-    yield from photographed("cones")
+    yield from photographed(picture, "cones")
+    yield from pause()
     colours = part("pattern").palette(3)
     image = pixels()
     seen["cone_pixels"] = [near(image, colour) for colour in colours]
@@ -73,7 +68,7 @@ def heat_map():
     with in_view():
         bpy.ops.mesh.orbifold_show_distortion(measure="AREA")
     seen["shading"].append(shading.color_type)
-    yield from photographed("heat")
+    yield from photographed(picture, "heat")
     with in_view():
         bpy.ops.mesh.orbifold_hide_distortion()
     seen["shading"].append(shading.color_type)
@@ -109,7 +104,7 @@ def live(obj):
     seen["uv_changed"] = float(np.abs(uv_of(obj) - before).max())
     seen["problems"] = list(state.problems.values())
     bpy.ops.mesh.select_all(action="SELECT")
-    yield from photographed("live")
+    yield from photographed(picture, "live")
     press("RET")
     yield from pause(5)
     for _ in range(2):
@@ -123,7 +118,7 @@ def live(obj):
     obj.data.orbifold.signature = "44"
     yield lambda: not bpy.app.timers.is_registered(part("live")._tick)
     seen["impossible"] = [part("live").problem(obj.data), float(np.abs(uv_of(obj) - before).max())]
-    yield from photographed("impossible")
+    yield from photographed(picture, "impossible")
     obj.data.orbifold.signature = "442"
     yield lambda: not bpy.app.timers.is_registered(part("live")._tick)
     seen["possible_again"] = part("live").problem(obj.data)
@@ -137,7 +132,7 @@ def tile():
         bpy.ops.object.select_all(action="SELECT")
         bpy.ops.view3d.view_axis(type="FRONT")
         bpy.ops.view3d.view_selected()
-    yield from photographed("tile")
+    yield from photographed(picture, "tile")
 
 
 enable()

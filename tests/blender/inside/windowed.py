@@ -48,7 +48,7 @@ def press(key: str, **held: bool) -> None:
 
 def type_in(text: str) -> Generator:
     for letter in text:
-        key = "SPACE" if letter == " " else letter.upper()
+        key = {" ": "SPACE", "-": "MINUS"}.get(letter, letter.upper())
         simulate(key, "PRESS", unicode=letter)
         simulate(key, "RELEASE")
         yield
@@ -68,9 +68,10 @@ def click_at(x: float, y: float, **held: bool) -> Generator:
     yield
 
 
-def to_middle(kind: str = "VIEW_3D") -> None:
+def move_into(kind: str = "VIEW_3D") -> None:
+    """Between toolbar and sidebar."""
     region = region_of(kind)
-    move_to(region.x + region.width / 2, region.y + region.height / 2)
+    move_to(region.x + 0.3 * region.width, region.y + region.height / 2)
 
 
 def find_button(kind: str, operator: str) -> Generator:
@@ -90,8 +91,14 @@ def find_button(kind: str, operator: str) -> Generator:
     raise LookupError(f"no button of {operator} is in the sidebar")
 
 
+def show_info() -> Generator:
+    """The Info editor in place of the timeline, for `reports`."""
+    areas("DOPESHEET_EDITOR")[0].ui_type = "INFO"
+    yield
+
+
 def reports() -> str:
-    """All that the Info editor lists; one has to be open."""
+    """All that the Info editor lists."""
     with in_view("INFO"):
         bpy.ops.info.select_all(action="SELECT")
         bpy.ops.info.report_copy()
@@ -100,6 +107,14 @@ def reports() -> str:
 
 def photograph(path: str) -> None:
     subprocess.run(["import", "-window", "root", path], check=True)
+
+
+def photographed(picture: str, name: str) -> Generator:
+    """Two seconds later, when all is drawn; `picture` - for no picture."""
+    for _ in range(20 if picture != "-" else 0):
+        yield
+    if picture != "-":
+        photograph(f"{picture}-{name}.png")
 
 
 def show_tab(kind: str, panel: str) -> Generator:
