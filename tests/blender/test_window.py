@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 from conftest import INSIDE, Home, blender_path, zip_path
 
-LIMIT = 900
+LIMIT = 600
 
 
 @pytest.fixture(scope="module")
