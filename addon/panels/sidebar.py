@@ -87,7 +87,7 @@ class MESH_UL_orbifold_suggestions(bpy.types.UIList):
 
     def draw_item(self, context, layout, _data, item, _icon, _active_data, _active_property, index=0) -> None:
         placed = suggestions.placed_row(context.active_object.data) == index
-        icons = ("CHECKMARK" if placed else "NONE", "NONE", "NONE")
+        icons = ("CHECKMARK" if placed else "BLANK1", "NONE", "NONE")
         for cell, text, icon in zip(table_columns(layout), table_texts(item), icons):
             cell.operator("mesh.orbifold_place_suggestion", text=text, icon=icon, emboss=False).index = index
 
