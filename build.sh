@@ -80,7 +80,15 @@ want_blender() {
     command -v blender >/dev/null || { want blender; want libegl1; want libgl1; }
 }
 
-want_tests() { want_native; want_python numpy pytest; want_blender; }
+want_tests() { want_native; want_python numpy pytest; want_blender; want_screen; }
+
+# A virtual screen, and what looks at it.
+want_screen() {
+    want xvfb xvfb-run
+    want xauth xauth
+    want imagemagick import
+    want libgl1-mesa-dri
+}
 
 want_docs() {
     want_blender

@@ -117,8 +117,7 @@ def test_escape_ends_suggesting(suggested: dict) -> None:
 
 
 def test_cones_and_cut_are_drawn_and_can_be_switched_off(shown: dict) -> None:
-    assert min(shown["cone_pixels"]) > 30 and min(shown["cut_pixels"]) > 200
-    assert max(shown["pixels_when_off"]) < 20
+    assert shown["drawn_and_not_drawn"]
 
 
 def test_a_heat_map_switches_the_view_s_colours_and_switches_them_back(shown: dict) -> None:

@@ -28,12 +28,13 @@ def pixels():
     return np.frombuffer(made, np.uint8).reshape(region.height, region.width, 3).astype(int)
 
 
-def near(image, colour):
-    """How many pixels have nearly this colour in [0, 1]."""
-    return int((np.abs(image - 255 * np.asarray(colour)).max(-1) < 30).sum())
+def counts(colours):
+    """How many pixels of the 3D view have nearly these colours in [0, 1]."""
+    image = pixels()
+    return [int((np.abs(image - 255 * np.asarray(colour)).max(-1) < 30).sum()) for colour in colours]
 
 
-def pause(ticks=20):
+def pause(ticks):
     for _ in range(ticks):
         yield
 
@@ -47,15 +48,11 @@ def steps():
         bpy.ops.view3d.view_selected()
         bpy.ops.object.select_all(action="DESELECT")
     yield from photographed(picture, "cones")
-    yield from pause()
-    colours = part("pattern").palette(3)
-    image = pixels()
-    seen["cone_pixels"] = [near(image, colour) for colour in colours]
-    seen["cut_pixels"] = [near(image, colour) for colour in part("overlay").path_colours(2)]
+    cones, cut = part("pattern").palette(3), part("overlay").path_colours(2)
+    yield lambda: min(counts(cones)) > 30 and min(counts(cut)) > 200
     bpy.context.scene.orbifold_view.show_cones = bpy.context.scene.orbifold_view.show_cut = False
-    yield from pause()
-    image = pixels()
-    seen["pixels_when_off"] = [near(image, colour) for colour in colours]
+    yield lambda: max(counts(cones)) < 20
+    seen["drawn_and_not_drawn"] = True
     bpy.context.scene.orbifold_view.show_cones = bpy.context.scene.orbifold_view.show_cut = True
     yield from heat_map()
     yield from live(obj)
