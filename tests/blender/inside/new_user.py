@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""In a real window, as somebody works who has just got the zip: by clicks and keys, but where a comment says otherwise.
+"""In a real window, as somebody works who has just got the zip: by clicks and keys. Only the zip is installed, the mesh
+made and subdivided, the editors arranged, the file saved and opened by the operators that Blender's own buttons call.
 Arguments: the zip, the beginning of the screenshots' names or -, JSON."""
 
 import os
@@ -13,13 +14,12 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 sys.path.insert(0, os.path.dirname(__file__))
 from harness import blob, enable, far_among, install, module_name, uv_of  # noqa: E402
 from windowed import (  # noqa: E402
-    areas, click_at, drive, find_button, in_view, move_into, photographed, press, region_of, reports, show_info, show_tab,
-    type_in,
+    areas, click_at, drive, find_button, in_view, move_into, photographed, press, region_of, reports, show_info,
+    show_tab, type_in,
 )
 
 package, picture, out = sys.argv[-3:]
 seen = {}
-TASK = "Orbifold Unwrap"
 
 
 def the_object():
@@ -87,12 +87,14 @@ def still(value):
 
 
 def press_button(operator):
+    """In the sidebar."""
     yield from show_tab("VIEW_3D", "VIEW3D_PT_orbifold")
     x, y = yield from find_button("VIEW_3D", operator)
     yield from click_at(x, y)
 
 
 def unwrapped():
+    """By the button; the certificate is in the report."""
     yield from press_button("uv.orbifold_unwrap")
     yield lambda: len(uv_map())
     yield lambda: "certified" in reports()
@@ -136,7 +138,7 @@ def searched():
     """F3 and the operator's name."""
     ended = reports().count("certified")
     yield from key("F3", None)
-    yield from type_in(TASK)
+    yield from type_in("Orbifold Unwrap")
     press("RET")
     yield lambda: reports().count("certified") > ended
     seen["searched"] = bpy.context.window_manager.operators[-1].bl_idname
@@ -161,6 +163,7 @@ def escaped():
 
 
 def saved_and_opened():
+    """UV map, cones and settings are there again."""
     name, picked, map_before = the_object().name, cones(), uv_map()
     the_object().data.orbifold.keep_away = "Face"
     bpy.context.scene.orbifold_view.show_cut = False

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""In a real window: suggestions, their table, one click for all, Esc. Arguments: the beginning of the screenshots' names
-or -, JSON."""
+"""In a real window: suggestions, their table, one click for all, Esc. Arguments: the beginning of the screenshots'
+names or -, JSON."""
 
 import os
 import sys
