@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import faulthandler
 import json
 import os
 import subprocess
@@ -10,6 +11,7 @@ import traceback
 from typing import Generator
 
 import bpy
+from harness import HANGS
 
 TICK, PATIENCE = 0.1, 900  # seconds; ticks for one wait
 
@@ -181,4 +183,5 @@ def drive(todo: Generator, seen: dict, out: str) -> None:
             json.dump(seen, file)
         os._exit(0)
 
+    faulthandler.dump_traceback_later(HANGS, exit=True)
     bpy.app.timers.register(tick, first_interval=1.0, persistent=True)  # another file is loaded too
