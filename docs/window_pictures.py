@@ -1,0 +1,463 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures of the real window for the user guide, of the sample creature; make_window_pictures.sh starts this inside
+Blender. Arguments: the folder to write to, and the names of pictures, all if there is none.
+
+Each function of SCENES does the steps of one picture. It is a generator: a `yield` waits for the next tick of a timer,
+so that Blender draws in between; a function that is yielded is waited for."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import subprocess
+import sys
+import traceback
+from collections.abc import Callable, Generator, Sequence
+
+import bmesh
+import bpy
+import numpy as np
+from mathutils import Euler, Vector
+
+NAME = "orbifold_uv"
+TICK, PATIENCE, FRAMES = 0.1, 600, 12  # seconds; ticks of one wait; ticks after which all is drawn
+SCALE = 1.15  # of the interface: pictures are shown smaller than they are
+PLACES = {  # of vertices on the creature: the nearest one is picked
+    "ear": (0.82, -0.74, 3.34), "other ear": (-0.82, -0.74, 3.34), "tail": (0, 1.02, 2.52),}
+folds = {"open": "Orbifold UV"}
+folder, wanted = sys.argv[sys.argv.index("--") + 1], sys.argv[sys.argv.index("--") + 2 :]
+
+
+def part(name: str):
+    return importlib.import_module(f"{NAME}.{name}")
+
+
+# --------------------------------------------------------------------------------------------------- the window
+
+
+def window() -> bpy.types.Window:
+    return bpy.context.window_manager.windows[0]
+
+
+def area_of(kind: str) -> bpy.types.Area:
+    return next(area for area in window().screen.areas if area.type == kind)
+
+
+def region_of(kind: str, region: str = "WINDOW") -> bpy.types.Region:
+    return next(found for found in area_of(kind).regions if found.type == region)
+
+
+def inside(kind: str = "VIEW_3D"):
+    return bpy.context.temp_override(window=window(), area=area_of(kind), region=region_of(kind))
+
+
+def pointer(x: float, y: float, *events: tuple[str, str]) -> Generator:
+    """Move the mouse there and press."""
+    for kind, value in (("MOUSEMOVE", "NOTHING"), *events):
+        window().event_simulate(type=kind, value=value, x=int(x), y=int(y))
+        yield
+
+
+def click(x: float, y: float) -> Generator:
+    return pointer(x, y, ("LEFTMOUSE", "PRESS"), ("LEFTMOUSE", "RELEASE"))
+
+
+def press(key: str) -> None:
+    for value in ("PRESS", "RELEASE"):
+        window().event_simulate(type=key, value=value)
+
+
+def away() -> Generator:
+    """The mouse where it changes nothing."""
+    return pointer(window().width // 2, window().height - 6)
+
+
+def pause(ticks: int = FRAMES) -> Generator:
+    for _ in range(ticks):
+        yield
+
+
+def photograph(name: str, box: tuple[float, float, float, float] = (0, 0, 1, 1)) -> Generator:
+    """The rectangle of all editors, or a part of it: left, top, right, bottom."""
+    yield from pause()
+    there = window().screen.areas
+    left, low = min(area.x for area in there), min(area.y for area in there)
+    width = max(area.x + area.width for area in there) - left
+    height = max(area.y + area.height for area in there) - low
+    x, y = left + int(box[0] * width), window().height - low - height + int(box[1] * height)
+    size = f"{int((box[2] - box[0]) * width)}x{int((box[3] - box[1]) * height)}+{x}+{y}"
+    subprocess.run(["import", "-window", "root", "-crop", size, "+repage", f"{folder}/{name}.png"], check=True)
+
+
+def arrange() -> Generator:
+    """A 3D view and nothing else, without what is of no use here."""
+    for kind in ("DOPESHEET_EDITOR", "OUTLINER", "PROPERTIES"):
+        with bpy.context.temp_override(window=window(), area=area_of(kind)):
+            bpy.ops.screen.area_close()
+        yield
+    space = area_of("VIEW_3D").spaces.active
+    space.show_region_toolbar = space.show_gizmo = False
+    overlay = space.overlay
+    overlay.show_floor = overlay.show_axis_x = overlay.show_axis_y = overlay.show_text = overlay.show_cursor = False
+    overlay.show_object_origins = overlay.show_relationship_lines = False
+    yield from sidebar("VIEW_3D", "VIEW3D_PT_orbifold")
+
+
+def uv_editor(share: float = 0.4) -> Generator:
+    """To the left of the 3D view, with this share of its width."""
+    with inside():
+        bpy.ops.screen.area_split(direction="VERTICAL", factor=share)
+    yield
+    left = min((area for area in window().screen.areas if area.type == "VIEW_3D"), key=lambda area: area.x)
+    left.ui_type = "UV"
+    yield
+    left.spaces.active.show_region_ui = left.spaces.active.show_gizmo = False
+    left.spaces.active.show_region_toolbar = False
+
+
+def no_uv_editor() -> Generator:
+    if any(area.type == "IMAGE_EDITOR" for area in window().screen.areas):
+        with bpy.context.temp_override(window=window(), area=area_of("IMAGE_EDITOR")):
+            bpy.ops.screen.area_close()
+    yield
+
+
+def sidebar(kind: str, panel: str, wide: int = 0) -> Generator:
+    """Choose the tab Orbifold: version 3 leaves no other way than clicks at the edge, until our panel is drawn."""
+    area_of(kind).spaces.active.show_region_ui = True
+    yield from pause(3)
+    region = region_of(kind, "UI")
+    if hasattr(region, "active_panel_category"):
+        region.active_panel_category = "Orbifold"
+        return
+    drawn: list[bool] = []
+
+    def note(_panel, _context) -> None:
+        drawn.append(True)
+
+    getattr(bpy.types, panel).append(note)
+    for y in range(region.y + region.height - 20, region.y + 20, -20):
+        drawn.clear()  # at first the panels of all tabs are drawn
+        yield from click(region.x + region.width - 10, y)
+        yield from pause(2)
+        if drawn:
+            break
+    getattr(bpy.types, panel).remove(note)
+    yield from away()
+
+
+def tab(panel: str) -> Generator:
+    """Show the panel "Orbifold UV", or fold it, so that "Show" is to be seen: a click on its title does either."""
+    if panel != folds["open"]:
+        region = region_of("VIEW_3D", "UI")
+        yield from click(region.x + 0.4 * region.width, region.y + region.height - 15 * SCALE)
+        yield from away()
+        folds["open"] = panel
+
+
+def scroll(steps: int) -> Generator:
+    """The sidebar, downwards."""
+    region, kind = region_of("VIEW_3D", "UI"), "WHEELDOWNMOUSE" if steps > 0 else "WHEELUPMOUSE"
+    for _ in range(abs(steps)):
+        yield from pointer(region.x + region.width // 3, region.y + region.height // 2, (kind, "PRESS"))
+    yield from away()
+
+
+def look(rotation: tuple[float, float, float], at: tuple[float, float, float], distance: float) -> None:
+    """Degrees, a point and how far off."""
+    view = area_of("VIEW_3D").spaces.active.region_3d
+    view.view_perspective = "PERSP"
+    view.view_rotation = Euler([np.radians(angle) for angle in rotation]).to_quaternion()
+    view.view_location, view.view_distance = Vector(at), distance
+
+
+def shade(kind: str) -> None:
+    shading = area_of("VIEW_3D").spaces.active.shading
+    shading.type = kind
+    if kind == "SOLID":
+        shading.color_type = "MATERIAL"
+
+
+# ----------------------------------------------------------------------------------------------------- the mesh
+
+
+def creature(subdivisions: int = 3) -> bpy.types.Object:
+    """A new one, the only object, active."""
+    if bpy.context.object is not None and bpy.context.object.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    for data in (bpy.data.objects, bpy.data.meshes, bpy.data.materials, bpy.data.images):
+        for item in list(data):
+            data.remove(item)
+    sample = part("headless.sample")
+    sample.SUBDIVISIONS = subdivisions
+    obj = sample.make_creature()
+    bpy.context.view_layer.objects.active = obj
+    obj.select_set(True)
+    bpy.ops.ed.undo_push(message="creature")
+    return obj
+
+
+def nearest(obj: bpy.types.Object, place: tuple[float, float, float]) -> int:
+    points = np.empty(3 * len(obj.data.vertices))
+    obj.data.vertices.foreach_get("co", points)
+    return int(np.linalg.norm(points.reshape(-1, 3) - place, axis=1).argmin())
+
+
+def pick(obj: bpy.types.Object, places: Sequence[str]) -> None:
+    """Go to edit mode and click these vertices in turn."""
+    vertices = [nearest(obj, PLACES[place]) for place in places]
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bm = bmesh.from_edit_mesh(obj.data)
+    bm.verts.ensure_lookup_table()
+    bm.select_history.clear()
+    for vertex in vertices:
+        bm.verts[vertex].select = True
+        bm.select_history.add(bm.verts[vertex])
+    bmesh.update_edit_mesh(obj.data)
+
+
+def unwrap(obj: bpy.types.Object, **settings) -> Generator:
+    """As by the button, and wait until it is done."""
+    before = obj.data.orbifold.unwraps
+    with inside():
+        bpy.ops.uv.orbifold_unwrap("INVOKE_DEFAULT", True, **settings)
+    yield lambda: obj.data.orbifold.unwraps != before
+    yield
+
+
+def fit_uv() -> None:
+    with inside("IMAGE_EDITOR"):
+        bpy.ops.image.view_all(fit_view=True)
+
+
+# ---------------------------------------------------------------------------------------------------- the scenes
+
+
+def one_click() -> Generator:
+    yield from bare()
+    yield from unwrap(bpy.context.object)
+    yield from photograph("one_click")
+
+
+def redo() -> Generator:
+    """The panel of the last operator, unfolded by a click on its title."""
+    yield from bare()
+    look(SIDE, (0, 0.4, 0.8), 1.3 * FAR)
+    yield from unwrap(bpy.context.object)
+    yield from pause()
+    region = region_of("VIEW_3D", "HUD")
+    title = (region.x + region.width // 2, region.y + region.height // 2)
+    yield from click(*title)
+    yield from away()
+    yield from photograph("redo")
+    yield from click(title[0], region.y + region.height - 12)
+    yield from away()
+
+
+def picking() -> Generator:
+    yield from bare(1)
+    pick(bpy.context.object, EARS_AND_TAIL)
+    with inside():
+        bpy.ops.mesh.orbifold_add_cones("INVOKE_DEFAULT", True)
+    yield from photograph("picking")
+
+
+def signatures() -> Generator:
+    """The menu beside the signature."""
+    yield from bare(1)
+    pick(bpy.context.object, EARS_AND_TAIL)
+    with inside():
+        bpy.ops.mesh.orbifold_add_cones("INVOKE_DEFAULT", True)
+    bpy.context.preferences.view.ui_scale = 0.95  # for three columns side by side
+    yield from pause()
+    yield from pointer(window().width // 2, 0.6 * window().height)
+    with inside():
+        bpy.ops.wm.call_menu(name="MESH_MT_orbifold_signatures")
+    yield from photograph("signatures", (0, 0.31, 0.86, 0.87))
+    press("ESC")
+    bpy.context.preferences.view.ui_scale = SCALE
+    yield from pause()
+
+
+def layout() -> Generator:
+    """Edit mode, with the layout beside the mesh."""
+    yield from beside()
+    yield from photograph("layout")
+
+
+def heat() -> Generator:
+    yield from three_cones()
+    with inside():
+        bpy.ops.mesh.orbifold_show_distortion(measure="AREA")
+    yield from tab("Show")
+    yield from photograph("heat")
+    with inside():
+        bpy.ops.mesh.orbifold_hide_distortion()
+
+
+def pattern() -> Generator:
+    """The tile preview, and a pattern over mesh and tile."""
+    yield from three_cones()
+    bpy.context.scene.orbifold_view.pattern = "QUADS"
+    with inside():
+        bpy.ops.object.orbifold_pattern("INVOKE_DEFAULT", True)
+        bpy.ops.object.orbifold_tile_preview("INVOKE_DEFAULT", True)
+    yield from tab("Show")
+    look((80, 0, 10), (2.6, 0, 1.7), 1.75 * FAR)
+    shade("MATERIAL")
+    yield from pause(40)
+    yield from photograph("pattern")
+
+
+def suggesting() -> Generator:
+    """The table of suggestions, and the stretch that the first one promises."""
+    yield from bare()
+    obj = bpy.context.object
+    with inside():
+        bpy.ops.mesh.orbifold_suggest_cones("INVOKE_DEFAULT", True)
+    yield lambda: len(obj.data.orbifold.suggestions.rows)
+    with inside():
+        bpy.ops.mesh.orbifold_place_suggestion("INVOKE_DEFAULT", True, index=0)
+        bpy.ops.mesh.orbifold_show_stretch("INVOKE_DEFAULT", True)
+    yield from photograph("suggesting", (0, 0, 1, 0.93))
+    with inside():
+        bpy.ops.mesh.orbifold_hide_distortion()
+
+
+def checking() -> Generator:
+    """A mesh with faults: a hole, a doubled face, a flipped one."""
+    yield from bare(1)
+    obj = bpy.context.object
+    bm = bmesh.new()
+    bm.from_mesh(obj.data)
+    bm.faces.ensure_lookup_table()
+    near = sorted(bm.faces, key=lambda face: (face.calc_center_median() - Vector((0.5, -0.2, 1.3))).length)
+    near[0].normal_flip()
+    fin = bm.verts.new(near[6].calc_center_median() + Vector((0.5, -0.1, 0.3)))
+    bm.faces.new((*near[6].edges[0].verts, fin))
+    bmesh.ops.delete(bm, geom=near[12:15], context="FACES")
+    bm.to_mesh(obj.data)
+    bm.free()
+    with inside():
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.orbifold_check("INVOKE_DEFAULT", True)
+    yield from scroll(12)
+    yield from photograph("checking")
+    yield from scroll(-12)
+
+
+def painting() -> Generator:
+    """The image that the script of painting.md makes, and a close-up of it over a seam."""
+    yield from three_cones()
+    with open(os.path.join(os.path.dirname(__file__), "painting.md"), encoding="utf-8") as page:
+        script = page.read().partition("```python\n")[2].partition("```")[0]
+    exec(compile(script, "painting.md", "exec"), {})
+    yield from uv_editor(0.45)
+    area_of("IMAGE_EDITOR").ui_type = "IMAGE_EDITOR"
+    yield
+    space = area_of("IMAGE_EDITOR").spaces.active
+    space.image, space.show_region_ui, space.show_region_toolbar = bpy.data.images["Petals"], False, False
+    area_of("VIEW_3D").spaces.active.show_region_ui = False
+    fit_uv()
+    look((50, 0, 150), (0, 0.2, 1.6), 3.5)
+    shade("MATERIAL")
+    yield from pause(40)
+    yield from photograph("painting")
+    area_of("VIEW_3D").spaces.active.show_region_ui = True
+    yield
+
+
+SIDE, MIDDLE, FAR = (72, 0, 62), (0, 0, 1.75), 5.6  # how the creature is looked at
+EARS_AND_TAIL = ("ear", "other ear", "tail")
+SCENES: dict[str, Callable[[], Generator]] = {
+    scene.__name__: scene
+    for scene in (
+        one_click, redo, picking, signatures, layout, heat, pattern, suggesting, checking, painting
+    )
+}
+
+
+def bare(subdivisions: int = 3) -> Generator:
+    """The creature as it is, in object mode; the 3D view with the panel of cones."""
+    creature(subdivisions)
+    yield from no_uv_editor()
+    yield from tab("Orbifold UV")
+    shade("SOLID")
+    look(SIDE, MIDDLE, FAR)
+
+
+def three_cones() -> Generator:
+    """The creature in object mode, unwrapped as 442."""
+    yield from bare()
+    obj = bpy.context.object
+    pick(obj, EARS_AND_TAIL)
+    with inside():
+        bpy.ops.mesh.orbifold_add_cones()
+    obj.data.orbifold.signature = "442"
+    bpy.ops.object.mode_set(mode="OBJECT")
+    yield from unwrap(obj)
+
+
+def beside() -> Generator:
+    """A coarse creature in edit mode, unwrapped as 442, and its layout."""
+    yield from bare(1)
+    obj = bpy.context.object
+    yield from uv_editor()
+    bpy.context.tool_settings.use_uv_select_sync = True
+    look(SIDE, MIDDLE, 1.4 * FAR)
+    pick(obj, EARS_AND_TAIL)
+    with inside():
+        bpy.ops.mesh.orbifold_add_cones("INVOKE_DEFAULT", True)
+    obj.data.orbifold.signature = "442"
+    yield from unwrap(obj)
+    bpy.ops.mesh.select_all(action="SELECT")
+    yield
+    with inside("IMAGE_EDITOR"):
+        bpy.ops.image.view_selected()
+    bpy.ops.mesh.select_all(action="DESELECT")
+    yield
+
+
+# ------------------------------------------------------------------------------------------------------- driving
+
+
+def steps() -> Generator:
+    yield from pause()
+    yield from arrange()
+    for name in wanted or SCENES:
+        print(f"picture: {name}", flush=True)
+        yield from SCENES[name]()
+
+
+def drive(todo: Generator) -> None:
+    """Advance by one step at each tick, or wait for what was yielded; end Blender after the last one."""
+    state: dict = {"waiting": None, "ticks": 0}
+
+    def tick() -> float:
+        status = 0
+        try:
+            if state["waiting"] is not None and not state["waiting"]():
+                state["ticks"] += 1
+                if state["ticks"] > PATIENCE:
+                    raise TimeoutError("the state that was waited for did not come")
+                return TICK
+            state["waiting"], state["ticks"] = next(todo), 0
+            return TICK
+        except StopIteration:
+            pass
+        except Exception:
+            traceback.print_exc()
+            status = 1
+        sys.stdout.flush()
+        os._exit(status)
+
+    bpy.app.timers.register(tick, first_interval=1.0)
+
+
+bpy.ops.preferences.addon_enable(module=NAME)
+view = bpy.context.preferences.view
+view.show_splash = view.show_tooltips = False
+view.ui_scale = SCALE
+bpy.context.preferences.system.use_region_overlap = False
+drive(steps())
