@@ -12,7 +12,8 @@
 #   ./build.sh package [--blender PATH]   build/orbifold_uv-VERSION.zip, to install in Blender, and build/repository/,
 #                                         an extension repository that Blender 4.2 and later can subscribe to
 #   ./build.sh bench [ROUNDS [MESHES]]    seconds of each stage on several meshes
-#   ./build.sh docs [--blender PATH]      the pictures of the documentation
+#   ./build.sh docs [--blender PATH]      the pictures of docs/orbifolds.md, rendered
+#   ./build.sh docs window [NAME...]      the pictures of Blender's window, of a real one on a virtual screen
 #   ./build.sh docs cones                 the tables of docs/cones.md, measured (an hour)
 #   ./build.sh deps                       install what all of these need, and nothing else
 #   ./build.sh clean                      remove what was built
@@ -95,6 +96,8 @@ want_docs() {
     want_python numpy
     want pngquant pngquant
     want imagemagick montage
+    want xvfb xvfb-run
+    want xauth xauth
 }
 
 install_missing() {
@@ -227,10 +230,11 @@ docs() {
         PYTHONDONTWRITEBYTECODE=1 "$(find_python numpy)" "$root/docs/make_cones.py"
         return
     fi
-    [ -e "$root/docs/make_pictures.sh" ] || die "there is no docs/make_pictures.sh"
+    local script=make_pictures.sh
+    if [ "${arguments[0]:-}" = window ]; then script=make_window_pictures.sh arguments=("${arguments[@]:1}"); fi
     want_docs
     native
-    ORBIFOLD_BLENDER=$(find_blender) ORBIFOLD_PYTHON=$(find_python numpy) bash "$root/docs/make_pictures.sh" "${arguments[@]}"
+    ORBIFOLD_BLENDER=$(find_blender) ORBIFOLD_PYTHON=$(find_python numpy) bash "$root/docs/$script" "${arguments[@]}"
 }
 
 clean() { rm -rf --one-file-system "$build" "$root/out" "$root"/addon/core/liborbifold.{so,dylib,dll}; }

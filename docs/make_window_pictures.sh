@@ -7,8 +7,8 @@ docs=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(dirname "$docs")
 work=$root/build/docs/window
 pictures=$docs/window
-size=1120x820
-colours=96
+size=1120x880
+colours=64
 
 main() {
     local log=$work/blender.log picture
@@ -24,7 +24,7 @@ main() {
         exit 1
     fi
     for picture in "$work"/pictures/*.png; do
-        pngquant --force --speed 1 --strip --output "$pictures/$(basename "$picture")" "$colours" -- "$picture"
+        pngquant --force --speed 1 --strip --nofs --output "$pictures/$(basename "$picture")" "$colours" -- "$picture"
         echo "${pictures#"$root"/}/$(basename "$picture")"
     done
 }

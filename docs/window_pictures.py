@@ -304,7 +304,7 @@ def pattern() -> Generator:
         bpy.ops.object.orbifold_pattern("INVOKE_DEFAULT", True)
         bpy.ops.object.orbifold_tile_preview("INVOKE_DEFAULT", True)
     yield from tab("Show")
-    look((80, 0, 10), (2.6, 0, 1.7), 1.75 * FAR)
+    look((80, 0, 10), (2.8, 0, 1.7), 1.6 * FAR)
     shade("MATERIAL")
     yield from pause(40)
     yield from photograph("pattern")
@@ -320,7 +320,7 @@ def suggesting() -> Generator:
     with inside():
         bpy.ops.mesh.orbifold_place_suggestion("INVOKE_DEFAULT", True, index=0)
         bpy.ops.mesh.orbifold_show_stretch("INVOKE_DEFAULT", True)
-    yield from photograph("suggesting", (0, 0, 1, 0.93))
+    yield from photograph("suggesting")
     with inside():
         bpy.ops.mesh.orbifold_hide_distortion()
 
@@ -348,22 +348,32 @@ def checking() -> Generator:
 
 
 def painting() -> Generator:
-    """The image that the script of painting.md makes, and a close-up of it over a seam."""
-    yield from three_cones()
-    with open(os.path.join(os.path.dirname(__file__), "painting.md"), encoding="utf-8") as page:
-        script = page.read().partition("```python\n")[2].partition("```")[0]
-    exec(compile(script, "painting.md", "exec"), {})
-    yield from uv_editor(0.45)
-    area_of("IMAGE_EDITOR").ui_type = "IMAGE_EDITOR"
-    yield
-    space = area_of("IMAGE_EDITOR").spaces.active
-    space.image, space.show_region_ui, space.show_region_toolbar = bpy.data.images["Petals"], False, False
-    area_of("VIEW_3D").spaces.active.show_region_ui = False
-    fit_uv()
-    look((50, 0, 150), (0, 0.2, 1.6), 3.5)
-    shade("MATERIAL")
-    yield from pause(40)
+    """The image that the script of painting.md makes, and the creature's neck, where the cut runs through it."""
+    yield from petals()
     yield from photograph("painting")
+    area_of("VIEW_3D").spaces.active.show_region_ui = True
+    yield
+
+
+def stroke() -> Generator:
+    """A stroke of the brush across the cut."""
+    yield from petals()
+    image, region = bpy.data.images["Petals"], region_of("VIEW_3D")
+    before = pixels_of(image)
+    with inside():
+        bpy.ops.object.mode_set(mode="TEXTURE_PAINT")
+        bpy.context.tool_settings.image_paint.brush.color = (1.0, 0.9, 0.0)
+        bpy.ops.paint.image_paint(stroke=[
+            {"name": "", "location": (0, 0, 0), "mouse": place, "mouse_event": place, "x_tilt": 0.0, "y_tilt": 0.0,
+             "pressure": 1.0, "size": 25, "pen_flip": False, "time": 0.05 * number, "is_start": number == 0}
+            for number, place in enumerate((x * region.width, 0.35 * region.height) for x in np.linspace(0.45, 0.7, 20))
+        ])
+    yield from pause(40)
+    changed = np.abs(pixels_of(image) - before).max(2) > 0.01
+    followed = [int((changed & np.rot90(changed, quarter)).sum()) for quarter in (1, 2, 3)]
+    print(f"picture: {changed.sum()} pixels painted, of which their copies have {followed}", flush=True)
+    yield from photograph("stroke")
+    bpy.ops.object.mode_set(mode="OBJECT")
     area_of("VIEW_3D").spaces.active.show_region_ui = True
     yield
 
@@ -373,7 +383,7 @@ EARS_AND_TAIL = ("ear", "other ear", "tail")
 SCENES: dict[str, Callable[[], Generator]] = {
     scene.__name__: scene
     for scene in (
-        one_click, redo, picking, signatures, layout, heat, pattern, suggesting, checking, painting
+        one_click, redo, picking, signatures, layout, heat, pattern, suggesting, checking, painting, stroke,
     )
 }
 
@@ -397,6 +407,30 @@ def three_cones() -> Generator:
     obj.data.orbifold.signature = "442"
     bpy.ops.object.mode_set(mode="OBJECT")
     yield from unwrap(obj)
+
+
+def petals() -> Generator:
+    """The creature with the image of painting.md, which is beside it."""
+    yield from three_cones()
+    with open(os.path.join(os.path.dirname(__file__), "painting.md"), encoding="utf-8") as page:
+        script = page.read().partition("```python\n")[2].partition("```")[0]
+    exec(compile(script, "painting.md", "exec"), {})
+    yield from uv_editor(0.45)
+    area_of("IMAGE_EDITOR").ui_type = "IMAGE_EDITOR"
+    yield
+    space = area_of("IMAGE_EDITOR").spaces.active
+    space.image, space.show_region_ui, space.show_region_toolbar = bpy.data.images["Petals"], False, False
+    area_of("VIEW_3D").spaces.active.show_region_ui = False
+    fit_uv()
+    look((55, 0, 160), (0.1, -0.6, 2.1), 2.4)
+    shade("MATERIAL")
+    yield from pause(40)
+
+
+def pixels_of(image: bpy.types.Image) -> np.ndarray:
+    pixels = np.empty((image.size[1], image.size[0], 4), np.float32)
+    image.pixels.foreach_get(pixels.ravel())
+    return pixels
 
 
 def beside() -> Generator:

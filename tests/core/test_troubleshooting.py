@@ -3,7 +3,7 @@
 
 A message stands on the page in bold code, with N for numbers, and NAME, REASON and the like for other words that vary.
 In the sources it is a string with holes: a format of C, an f-string, a string of bash. What stands in a hole is such a
-word, a few words that the sources choose from, or another string of the sources."""
+word, or another string of the sources."""
 
 from __future__ import annotations
 
@@ -19,7 +19,6 @@ PAGE = (CHECKOUT / "docs" / "troubleshooting.md").read_text(encoding="utf-8")
 QUOTED = [" ".join(text.split()) for _, text in re.findall(r"\*\*(`+)(.+?)\1\*\*", PAGE, re.DOTALL)]
 HOLE = "\0"
 VARIES = re.compile(r"([\"'(]*\b(N|[A-Z]{4,})\b[^a-zA-Z]*)*")
-CHOSEN = 4  # words in a hole that the sources choose from, at most
 FOR_PROGRAMS = {  # statuses that no mesh and no setting of a person leads to
     "ORB_OK", "ORB_INDEX_OUT_OF_RANGE", "ORB_BAD_ARGUMENT", "ORB_BAD_WEIGHT",
 }
@@ -46,8 +45,8 @@ def strings_of_bash(text: str) -> Iterator[str]:
 
 
 @lru_cache
-def patterns() -> list[re.Pattern[str]]:
-    """Of all strings of the sources that say something."""
+def strings() -> frozenset[str]:
+    """All of the sources."""
     found: set[str] = set()
     for path in (CHECKOUT / "native" / "src").glob("*.c"):
         found |= {string for string, _ in strings_of_c(path.read_text(encoding="utf-8"))}
@@ -55,7 +54,13 @@ def patterns() -> list[re.Pattern[str]]:
         found |= set(strings_of_python(path.read_text(encoding="utf-8")))
     for path in (CHECKOUT / "build.sh", *(CHECKOUT / "addon").glob("*.sh")):
         found |= set(strings_of_bash(path.read_text(encoding="utf-8")))
-    return [pattern(string) for string in sorted(found) if len(re.findall("[A-Za-z]", string)) > 8]
+    return frozenset(found)
+
+
+@lru_cache
+def patterns() -> list[re.Pattern[str]]:
+    """Of those that say something."""
+    return [pattern(string) for string in sorted(strings()) if len(re.findall("[A-Za-z]", string)) > 8]
 
 
 def pattern(string: str) -> re.Pattern[str]:
@@ -70,7 +75,7 @@ def matches(one: re.Pattern[str], message: str) -> bool:
 
 def fills(text: str) -> bool:
     """Whether this can stand in a hole."""
-    return VARIES.fullmatch(text) is not None or len(text.split()) <= CHOSEN or is_there(text)
+    return VARIES.fullmatch(text) is not None or text in strings() or is_there(text)
 
 
 @lru_cache(maxsize=None)
