@@ -8,7 +8,17 @@ root=$(dirname "$docs")
 work=$root/build/docs/window
 pictures=$docs/window
 size=1120x880
-colours=64
+most=145000                             # bytes of a picture
+
+# reduce FROM TO: as many colours as there is room for.
+reduce() {
+    local colours
+    for colours in 128 96 64 48 32 24 16; do
+        pngquant --force --speed 1 --strip --output "$2" "$colours" -- "$1"
+        [ "$(wc -c <"$2")" -gt $most ] || break
+    done
+    echo "${2#"$root"/}: $colours colours"
+}
 
 main() {
     local log=$work/blender.log picture
@@ -23,10 +33,7 @@ main() {
         echo "error: Blender stopped before it was done" >&2
         exit 1
     fi
-    for picture in "$work"/pictures/*.png; do
-        pngquant --force --speed 1 --strip --nofs --output "$pictures/$(basename "$picture")" "$colours" -- "$picture"
-        echo "${pictures#"$root"/}/$(basename "$picture")"
-    done
+    for picture in "$work"/pictures/*.png; do reduce "$picture" "$pictures/$(basename "$picture")"; done
 }
 
 main "$@"

@@ -274,7 +274,7 @@ def signatures() -> Generator:
     yield from pointer(window().width // 2, 0.6 * window().height)
     with inside():
         bpy.ops.wm.call_menu(name="MESH_MT_orbifold_signatures")
-    yield from photograph("signatures", (0, 0.31, 0.86, 0.87))
+    yield from photograph("signatures", (0.004, 0.338, 0.853, 0.813))
     press("ESC")
     bpy.context.preferences.view.ui_scale = SCALE
     yield from pause()
@@ -307,7 +307,7 @@ def pattern() -> Generator:
     look((80, 0, 10), (2.8, 0, 1.7), 1.6 * FAR)
     shade("MATERIAL")
     yield from pause(40)
-    yield from photograph("pattern")
+    yield from photograph("pattern", (0, 0, 1, 0.85))
 
 
 def suggesting() -> Generator:
@@ -362,7 +362,7 @@ def stroke() -> Generator:
     before = pixels_of(image)
     with inside():
         bpy.ops.object.mode_set(mode="TEXTURE_PAINT")
-        bpy.context.tool_settings.image_paint.brush.color = (1.0, 0.9, 0.0)
+        bpy.context.tool_settings.image_paint.brush.color = (1.0, 1.0, 1.0)
         bpy.ops.paint.image_paint(stroke=[
             {"name": "", "location": (0, 0, 0), "mouse": place, "mouse_event": place, "x_tilt": 0.0, "y_tilt": 0.0,
              "pressure": 1.0, "size": 25, "pen_flip": False, "time": 0.05 * number, "is_start": number == 0}
