@@ -319,7 +319,7 @@ def suggesting() -> Generator:
     yield lambda: len(obj.data.orbifold.suggestions.rows)
     with inside():
         bpy.ops.mesh.orbifold_place_suggestion("INVOKE_DEFAULT", True, index=0)
-        bpy.ops.mesh.orbifold_show_stretch("INVOKE_DEFAULT", True)
+        bpy.ops.mesh.orbifold_show_stretch()
     yield from photograph("suggesting")
     with inside():
         bpy.ops.mesh.orbifold_hide_distortion()
