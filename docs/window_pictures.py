@@ -2,180 +2,35 @@
 """Pictures of the real window for the user guide, of the sample creature; make_window_pictures.sh starts this inside
 Blender. Arguments: the folder to write to, and the names of pictures, all if there is none.
 
-Each function of SCENES does the steps of one picture. It is a generator: a `yield` waits for the next tick of a timer,
-so that Blender draws in between; a function that is yielded is waited for."""
+Each function of SCENES does the steps of one picture (picture_window.py)."""
 
 from __future__ import annotations
 
 import importlib
 import os
-import subprocess
 import sys
-import traceback
 from collections.abc import Callable, Generator, Sequence
 
 import bmesh
 import bpy
 import numpy as np
-from mathutils import Euler, Vector
+from mathutils import Vector
+
+sys.path.insert(0, os.path.dirname(__file__))
+from picture_window import (  # noqa: E402
+    area_of, arrange, away, click, drive, inside, look, no_uv_editor, pause, photograph, pointer, press, region_of,
+    SCALE, scroll, set_up, shade, tab, uv_editor, window,
+)
 
 NAME = "orbifold_uv"
-TICK, PATIENCE, FRAMES = 0.1, 600, 12  # seconds; ticks of one wait; ticks after which all is drawn
-SCALE = 1.15  # of the interface: pictures are shown smaller than they are
 PLACES = {  # of vertices on the creature: the nearest one is picked
-    "ear": (0.82, -0.74, 3.34), "other ear": (-0.82, -0.74, 3.34), "tail": (0, 1.02, 2.52),}
-folds = {"open": "Orbifold UV"}
+    "ear": (0.82, -0.74, 3.34), "other ear": (-0.82, -0.74, 3.34), "tail": (0, 1.02, 2.52),
+}
 folder, wanted = sys.argv[sys.argv.index("--") + 1], sys.argv[sys.argv.index("--") + 2 :]
 
 
 def part(name: str):
     return importlib.import_module(f"{NAME}.{name}")
-
-
-# --------------------------------------------------------------------------------------------------- the window
-
-
-def window() -> bpy.types.Window:
-    return bpy.context.window_manager.windows[0]
-
-
-def area_of(kind: str) -> bpy.types.Area:
-    return next(area for area in window().screen.areas if area.type == kind)
-
-
-def region_of(kind: str, region: str = "WINDOW") -> bpy.types.Region:
-    return next(found for found in area_of(kind).regions if found.type == region)
-
-
-def inside(kind: str = "VIEW_3D"):
-    return bpy.context.temp_override(window=window(), area=area_of(kind), region=region_of(kind))
-
-
-def pointer(x: float, y: float, *events: tuple[str, str]) -> Generator:
-    """Move the mouse there and press."""
-    for kind, value in (("MOUSEMOVE", "NOTHING"), *events):
-        window().event_simulate(type=kind, value=value, x=int(x), y=int(y))
-        yield
-
-
-def click(x: float, y: float) -> Generator:
-    return pointer(x, y, ("LEFTMOUSE", "PRESS"), ("LEFTMOUSE", "RELEASE"))
-
-
-def press(key: str) -> None:
-    for value in ("PRESS", "RELEASE"):
-        window().event_simulate(type=key, value=value)
-
-
-def away() -> Generator:
-    """The mouse where it changes nothing."""
-    return pointer(window().width // 2, window().height - 6)
-
-
-def pause(ticks: int = FRAMES) -> Generator:
-    for _ in range(ticks):
-        yield
-
-
-def photograph(name: str, box: tuple[float, float, float, float] = (0, 0, 1, 1)) -> Generator:
-    """The rectangle of all editors, or a part of it: left, top, right, bottom."""
-    yield from pause()
-    there = window().screen.areas
-    left, low = min(area.x for area in there), min(area.y for area in there)
-    width = max(area.x + area.width for area in there) - left
-    height = max(area.y + area.height for area in there) - low
-    x, y = left + int(box[0] * width), window().height - low - height + int(box[1] * height)
-    size = f"{int((box[2] - box[0]) * width)}x{int((box[3] - box[1]) * height)}+{x}+{y}"
-    subprocess.run(["import", "-window", "root", "-crop", size, "+repage", f"{folder}/{name}.png"], check=True)
-
-
-def arrange() -> Generator:
-    """A 3D view and nothing else, without what is of no use here."""
-    for kind in ("DOPESHEET_EDITOR", "OUTLINER", "PROPERTIES"):
-        with bpy.context.temp_override(window=window(), area=area_of(kind)):
-            bpy.ops.screen.area_close()
-        yield
-    space = area_of("VIEW_3D").spaces.active
-    space.show_region_toolbar = space.show_gizmo = False
-    overlay = space.overlay
-    overlay.show_floor = overlay.show_axis_x = overlay.show_axis_y = overlay.show_text = overlay.show_cursor = False
-    overlay.show_object_origins = overlay.show_relationship_lines = False
-    yield from sidebar("VIEW_3D", "VIEW3D_PT_orbifold")
-
-
-def uv_editor(share: float = 0.4) -> Generator:
-    """To the left of the 3D view, with this share of its width."""
-    with inside():
-        bpy.ops.screen.area_split(direction="VERTICAL", factor=share)
-    yield
-    left = min((area for area in window().screen.areas if area.type == "VIEW_3D"), key=lambda area: area.x)
-    left.ui_type = "UV"
-    yield
-    left.spaces.active.show_region_ui = left.spaces.active.show_gizmo = False
-    left.spaces.active.show_region_toolbar = False
-
-
-def no_uv_editor() -> Generator:
-    if any(area.type == "IMAGE_EDITOR" for area in window().screen.areas):
-        with bpy.context.temp_override(window=window(), area=area_of("IMAGE_EDITOR")):
-            bpy.ops.screen.area_close()
-    yield
-
-
-def sidebar(kind: str, panel: str, wide: int = 0) -> Generator:
-    """Choose the tab Orbifold: version 3 leaves no other way than clicks at the edge, until our panel is drawn."""
-    area_of(kind).spaces.active.show_region_ui = True
-    yield from pause(3)
-    region = region_of(kind, "UI")
-    if hasattr(region, "active_panel_category"):
-        region.active_panel_category = "Orbifold"
-        return
-    drawn: list[bool] = []
-
-    def note(_panel, _context) -> None:
-        drawn.append(True)
-
-    getattr(bpy.types, panel).append(note)
-    for y in range(region.y + region.height - 20, region.y + 20, -20):
-        drawn.clear()  # at first the panels of all tabs are drawn
-        yield from click(region.x + region.width - 10, y)
-        yield from pause(2)
-        if drawn:
-            break
-    getattr(bpy.types, panel).remove(note)
-    yield from away()
-
-
-def tab(panel: str) -> Generator:
-    """Show the panel "Orbifold UV", or fold it, so that "Show" is to be seen: a click on its title does either."""
-    if panel != folds["open"]:
-        region = region_of("VIEW_3D", "UI")
-        yield from click(region.x + 0.4 * region.width, region.y + region.height - 15 * SCALE)
-        yield from away()
-        folds["open"] = panel
-
-
-def scroll(steps: int) -> Generator:
-    """The sidebar, downwards."""
-    region, kind = region_of("VIEW_3D", "UI"), "WHEELDOWNMOUSE" if steps > 0 else "WHEELUPMOUSE"
-    for _ in range(abs(steps)):
-        yield from pointer(region.x + region.width // 3, region.y + region.height // 2, (kind, "PRESS"))
-    yield from away()
-
-
-def look(rotation: tuple[float, float, float], at: tuple[float, float, float], distance: float) -> None:
-    """Degrees, a point and how far off."""
-    view = area_of("VIEW_3D").spaces.active.region_3d
-    view.view_perspective = "PERSP"
-    view.view_rotation = Euler([np.radians(angle) for angle in rotation]).to_quaternion()
-    view.view_location, view.view_distance = Vector(at), distance
-
-
-def shade(kind: str) -> None:
-    shading = area_of("VIEW_3D").spaces.active.shading
-    shading.type = kind
-    if kind == "SOLID":
-        shading.color_type = "MATERIAL"
 
 
 # ----------------------------------------------------------------------------------------------------- the mesh
@@ -237,7 +92,7 @@ def fit_uv() -> None:
 def one_click() -> Generator:
     yield from bare()
     yield from unwrap(bpy.context.object)
-    yield from photograph("one_click")
+    yield from photograph(f"{folder}/one_click.png")
 
 
 def redo() -> Generator:
@@ -250,7 +105,7 @@ def redo() -> Generator:
     title = (region.x + region.width // 2, region.y + region.height // 2)
     yield from click(*title)
     yield from away()
-    yield from photograph("redo")
+    yield from photograph(f"{folder}/redo.png")
     yield from click(title[0], region.y + region.height - 12)
     yield from away()
 
@@ -260,7 +115,7 @@ def picking() -> Generator:
     pick(bpy.context.object, EARS_AND_TAIL)
     with inside():
         bpy.ops.mesh.orbifold_add_cones("INVOKE_DEFAULT", True)
-    yield from photograph("picking")
+    yield from photograph(f"{folder}/picking.png")
 
 
 def signatures() -> Generator:
@@ -274,7 +129,7 @@ def signatures() -> Generator:
     yield from pointer(window().width // 2, 0.6 * window().height)
     with inside():
         bpy.ops.wm.call_menu(name="MESH_MT_orbifold_signatures")
-    yield from photograph("signatures", (0.004, 0.338, 0.853, 0.813))
+    yield from photograph(f"{folder}/signatures.png", (0.004, 0.338, 0.853, 0.813))
     press("ESC")
     bpy.context.preferences.view.ui_scale = SCALE
     yield from pause()
@@ -283,7 +138,7 @@ def signatures() -> Generator:
 def layout() -> Generator:
     """Edit mode, with the layout beside the mesh."""
     yield from beside()
-    yield from photograph("layout")
+    yield from photograph(f"{folder}/layout.png")
 
 
 def heat() -> Generator:
@@ -291,7 +146,7 @@ def heat() -> Generator:
     with inside():
         bpy.ops.mesh.orbifold_show_distortion(measure="AREA")
     yield from tab("Show")
-    yield from photograph("heat")
+    yield from photograph(f"{folder}/heat.png")
     with inside():
         bpy.ops.mesh.orbifold_hide_distortion()
 
@@ -307,7 +162,7 @@ def pattern() -> Generator:
     look((80, 0, 10), (2.8, 0, 1.7), 1.6 * FAR)
     shade("MATERIAL")
     yield from pause(40)
-    yield from photograph("pattern", (0, 0, 1, 0.85))
+    yield from photograph(f"{folder}/pattern.png", (0, 0, 1, 0.85))
 
 
 def suggesting() -> Generator:
@@ -320,7 +175,7 @@ def suggesting() -> Generator:
     with inside():
         bpy.ops.mesh.orbifold_place_suggestion("INVOKE_DEFAULT", True, index=0)
         bpy.ops.mesh.orbifold_show_stretch()
-    yield from photograph("suggesting")
+    yield from photograph(f"{folder}/suggesting.png")
     with inside():
         bpy.ops.mesh.orbifold_hide_distortion()
 
@@ -343,14 +198,14 @@ def checking() -> Generator:
         bpy.ops.object.mode_set(mode="EDIT")
         bpy.ops.mesh.orbifold_check("INVOKE_DEFAULT", True)
     yield from scroll(12)
-    yield from photograph("checking")
+    yield from photograph(f"{folder}/checking.png")
     yield from scroll(-12)
 
 
 def painting() -> Generator:
     """The image that the script of painting.md makes, and the creature's neck, where the cut runs through it."""
     yield from petals()
-    yield from photograph("painting")
+    yield from photograph(f"{folder}/painting.png")
     area_of("VIEW_3D").spaces.active.show_region_ui = True
     yield
 
@@ -372,7 +227,7 @@ def stroke() -> Generator:
     changed = np.abs(pixels_of(image) - before).max(2) > 0.01
     followed = [int((changed & np.rot90(changed, quarter)).sum()) for quarter in (1, 2, 3)]
     print(f"picture: {changed.sum()} pixels painted, of which their copies have {followed}", flush=True)
-    yield from photograph("stroke")
+    yield from photograph(f"{folder}/stroke.png")
     bpy.ops.object.mode_set(mode="OBJECT")
     area_of("VIEW_3D").spaces.active.show_region_ui = True
     yield
@@ -464,34 +319,6 @@ def steps() -> Generator:
         yield from SCENES[name]()
 
 
-def drive(todo: Generator) -> None:
-    """Advance by one step at each tick, or wait for what was yielded; end Blender after the last one."""
-    state: dict = {"waiting": None, "ticks": 0}
-
-    def tick() -> float:
-        status = 0
-        try:
-            if state["waiting"] is not None and not state["waiting"]():
-                state["ticks"] += 1
-                if state["ticks"] > PATIENCE:
-                    raise TimeoutError("the state that was waited for did not come")
-                return TICK
-            state["waiting"], state["ticks"] = next(todo), 0
-            return TICK
-        except StopIteration:
-            pass
-        except Exception:
-            traceback.print_exc()
-            status = 1
-        sys.stdout.flush()
-        os._exit(status)
-
-    bpy.app.timers.register(tick, first_interval=1.0)
-
-
 bpy.ops.preferences.addon_enable(module=NAME)
-view = bpy.context.preferences.view
-view.show_splash = view.show_tooltips = False
-view.ui_scale = SCALE
-bpy.context.preferences.system.use_region_overlap = False
+set_up()
 drive(steps())
