@@ -33,10 +33,10 @@ def signature_state(signature: str, n_cones: int, n_corners: int = 0) -> Signatu
         return SignatureState(f"This version does not map a mesh onto this orbifold: {words}", False)
     tasks = _tasks(read.n_interior - n_cones, "cone", "inside", n_corners)
     tasks += _tasks(len(read.orders) - read.n_interior - n_corners, "mirror corner", "on the border", n_cones)
-    name = f"{read.geometry.capitalize()} {words}"
+    name = f"{read.geometry.capitalize()}: {words}"
     if tasks:
         unaided = "; or unwrap, and they will be suggested" if not n_cones + n_corners else ""
-        return SignatureState(f"{name}: {' and '.join(tasks)}{unaided}", False)
+        return SignatureState(f"{name}; {' and '.join(tasks)}{unaided}", False)
     if read.curvature > 0:
         return SignatureState(f"{name}; {round(2 / read.euler)} copies cover the sphere", True)
     return SignatureState(name, True)
