@@ -12,7 +12,8 @@
 #   ./build.sh package [--blender PATH]   build/orbifold_uv-VERSION.zip, to install in Blender, and build/repository/,
 #                                         an extension repository that Blender 4.2 and later can subscribe to
 #   ./build.sh bench [ROUNDS [MESHES]]    seconds of each stage on several meshes
-#   ./build.sh docs [--blender PATH]      the pictures of the documentation
+#   ./build.sh docs [--blender PATH]      the pictures of docs/orbifolds.md, rendered
+#   ./build.sh docs window [NAME...]      the pictures of Blender's window, of a real one on a virtual screen
 #   ./build.sh docs cones                 the tables of docs/cones.md, measured (an hour)
 #   ./build.sh deps                       install what all of these need, and nothing else
 #   ./build.sh clean                      remove what was built
@@ -80,13 +81,23 @@ want_blender() {
     command -v blender >/dev/null || { want blender; want libegl1; want libgl1; }
 }
 
-want_tests() { want_native; want_python numpy pytest; want_blender; }
+want_tests() { want_native; want_python numpy pytest; want_blender; want_screen; }
+
+# A virtual screen, and what looks at it.
+want_screen() {
+    want xvfb xvfb-run
+    want xauth xauth
+    want imagemagick import
+    want libgl1-mesa-dri
+}
 
 want_docs() {
     want_blender
     want_python numpy
     want pngquant pngquant
     want imagemagick montage
+    want xvfb xvfb-run
+    want xauth xauth
 }
 
 install_missing() {
@@ -219,10 +230,11 @@ docs() {
         PYTHONDONTWRITEBYTECODE=1 "$(find_python numpy)" "$root/docs/make_cones.py"
         return
     fi
-    [ -e "$root/docs/make_pictures.sh" ] || die "there is no docs/make_pictures.sh"
+    local script=make_pictures.sh
+    if [ "${arguments[0]:-}" = window ]; then script=make_window_pictures.sh arguments=("${arguments[@]:1}"); fi
     want_docs
     native
-    ORBIFOLD_BLENDER=$(find_blender) ORBIFOLD_PYTHON=$(find_python numpy) bash "$root/docs/make_pictures.sh" "${arguments[@]}"
+    ORBIFOLD_BLENDER=$(find_blender) ORBIFOLD_PYTHON=$(find_python numpy) bash "$root/docs/$script" "${arguments[@]}"
 }
 
 clean() { rm -rf --one-file-system "$build" "$root/out" "$root"/addon/core/liborbifold.{so,dylib,dll}; }
@@ -259,43 +271,83 @@ c_programs() {
     done
 }
 
-# python_tests FOLDER [RELEASE]: here, or in the root of a release of Debian; pytest's report is the count.
-python_tests() {
-    local report=$build/$1${2:+-$2}.xml status=0 total bad left_out python
-    compgen -G "$root/tests/$1/test_*.py" >/dev/null || return 0
-    echo "-- tests/$1${2:+ in Debian $2}"
+# pytest_in FOLDER [RELEASE]: here, or in the root of a release of Debian; leaves a report, which is what counts.
+pytest_in() {
+    local report python
+    report=$(report_of "$@")
     rm -f "$report"
     python=("$(find_python numpy pytest)")
     [ -z "${2:-}" ] || python=(bash "$roots" in "$2" env ORBIFOLD_BLENDER=/usr/bin/blender /usr/bin/python3)
     (cd "$root" && PYTHONDONTWRITEBYTECODE=1 timeout 3000 "${python[@]}" -m pytest -p no:cacheprovider \
-        -q -rs --junitxml "$report" "tests/$1") </dev/null || status=$?
-    if [ ! -s "$report" ]; then fail "tests/$1: pytest left no report, status $status"; return; fi
-    total=$(report_count tests "$report") left_out=$(report_count skipped "$report")
-    bad=$(($(report_count failures "$report") + $(report_count errors "$report")))
+        -q -rs --junitxml "$report" "tests/$1") </dev/null
+}
+
+report_of() { echo "$build/$1${2:+-$2}.xml"; }
+
+# count_report STATUS FOLDER [RELEASE]: what pytest ended with, and what it ran.
+count_report() {
+    local status=$1 report label=tests/$2${3:+ in Debian $3} total bad left_out
+    report=$(report_of "${@:2}")
+    if [ ! -s "$report" ]; then fail "$label: pytest left no report, status $status"; return; fi
+    total=$(report_number tests "$report") left_out=$(report_number skipped "$report")
+    bad=$(($(report_number failures "$report") + $(report_number errors "$report")))
     passed=$((passed + total - bad - left_out)) failed=$((failed + bad)) skipped=$((skipped + left_out))
-    case $status in 0 | 5) ;; *) [ $bad != 0 ] || fail "tests/$1: pytest ended with status $status" ;; esac
+    case $status in 0 | 5) ;; *) [ $bad != 0 ] || fail "$label: pytest ended with status $status" ;; esac
 }
 
-report_count() { grep -o '<testsuite [^>]*' "$2" | grep -o " $1=\"[0-9]*\"" | tr -dc 0-9; }
+report_number() { grep -o '<testsuite [^>]*' "$2" | grep -o " $1=\"[0-9]*\"" | tr -dc 0-9; }
 
-# blender_tests BLENDER [RELEASE]
+python_tests() {
+    local status=0
+    echo "-- tests/$1"
+    pytest_in "$1" || status=$?
+    count_report $status "$1"
+}
+
+# count_version VERSION PASSED FAILED SKIPPED: these were the counts before.
+count_version() { versions+=("Blender $1: $(counts $((passed - $2)) $((failed - $3)) $((skipped - $4)))"); }
+
 blender_tests() {
-    local before=($passed $failed $skipped) version
-    python_tests blender "${@:2}"
-    if [ $# = 1 ]; then version=$(version_of "$1"); else version="$(version_of bash "$roots" in "$2" "$1") (Debian $2)"; fi
-    versions+=("Blender $version: $(counts $((passed - before[0])) $((failed - before[1])) $((skipped - before[2])))")
+    local before=($passed $failed $skipped)
+    python_tests blender
+    count_version "$(version_of "$1")" "${before[@]}"
 }
 
-# The Blenders of other releases of Debian.
-other_blenders() {
-    local release reason
+# The Blenders of other releases of Debian: one after the other, in the background, for most tests keep one core busy.
+# What they say, and how they end, is kept in build/.
+others=""                               # the process group, while it runs
+start_others() {
+    local release
+    set -m
     for release in $(bash "$roots" releases); do
-        if { reason=$(bash "$roots" make "$release" 2>&1 >&3); } 3>&1; then
-            blender_tests blender "$release"
-        elif [ "$all" = always ]; then
-            fail "Blender of Debian $release: ${reason#error: }"
+        rm -f "$build/blender-$release".{log,status,refused}
+        if bash "$roots" make "$release" >"$build/blender-$release.log" 2>"$build/blender-$release.refused"; then
+            pytest_in blender "$release" >>"$build/blender-$release.log" 2>&1 && echo 0 || echo $?
+        fi >"$build/blender-$release.status"
+    done &
+    others=$!
+    set +m
+    trap 'kill -TERM -- -$others 2>/dev/null || true' EXIT
+}
+
+finish_others() {
+    local release name before reason
+    wait "$others" || true
+    trap - EXIT
+    for release in $(bash "$roots" releases); do
+        name=$build/blender-$release before=($passed $failed $skipped)
+        echo "-- tests/blender in Debian $release"
+        cat "$name.log"
+        if [ -s "$name.status" ]; then
+            count_report "$(cat "$name.status")" blender "$release"
+            count_version "$(version_of bash "$roots" in "$release" blender) (Debian $release)" "${before[@]}"
+            continue
+        fi
+        reason="Blender of Debian $release: $(sed 's/^error: //' "$name.refused")"
+        if [ "$all" = always ]; then
+            fail "$reason"
         else
-            echo "skip Blender of Debian $release: ${reason#error: }"
+            echo "skip $reason"
             skipped=$((skipped + 1))
         fi
     done
@@ -315,9 +367,10 @@ run_tests() {
         ORBIFOLD_BLENDER=$(find_blender)
         ORBIFOLD_ZIP=$(echo "$build"/orbifold_uv-*.zip)
         export ORBIFOLD_BLENDER ORBIFOLD_ZIP
+        [ -z "$all" ] || start_others
         python_tests core
         blender_tests "$ORBIFOLD_BLENDER"
-        [ -z "$all" ] || other_blenders
+        [ -z "$all" ] || finish_others
     else
         fail "package"
     fi

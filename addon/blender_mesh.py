@@ -261,6 +261,12 @@ def read_uv(mesh: bpy.types.Mesh, name: str = UV_MAP) -> np.ndarray:
     return uv.reshape(-1, 2)
 
 
+def is_safe_to_edit(mesh: bpy.types.Mesh) -> bool:
+    """False where an edge joins a vertex to itself: Blender 5.2 hangs when such a mesh goes to edit mode."""
+    edges = read_edges(mesh)
+    return not (edges[:, 0] == edges[:, 1]).any()
+
+
 def edge_indices(mesh: bpy.types.Mesh, pairs: np.ndarray, edges: Optional[np.ndarray] = None) -> np.ndarray:
     """(k,) int64 the edge between each pair of vertices, -1 where there is none. `pairs` (k, 2); `edges`: of
     `read_edges`, where they are at hand."""

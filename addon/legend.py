@@ -49,10 +49,12 @@ def draw(context: bpy.types.Context) -> None:
 
 
 def _corner(context: bpy.types.Context, scale: float) -> tuple[float, float]:
-    """Beside the toolbar, where it lies over the view."""
+    """Beside the toolbar, where it lies over the view, and above the panel of the last operator."""
     tools = next((region for region in context.area.regions if region.type == "TOOLS"), None)
     over = tools is not None and context.preferences.system.use_region_overlap and tools.width > 1
-    return MARGIN * scale + (tools.width if over else 0), 2 * MARGIN * scale
+    last = next((region for region in context.area.regions if region.type == "HUD"), None)
+    height = last.height if last is not None and last.height > 1 else 0
+    return MARGIN * scale + (tools.width if over else 0), max(2 * MARGIN * scale, MARGIN * scale + height)
 
 
 def _text(x: float, y: float, text: str) -> None:

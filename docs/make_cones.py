@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""docs/cones.md and docs/cones.svg, measured:   ./build.sh docs cones
+"""What docs/cones.md says from "Measured" on, and docs/cones.svg:   ./build.sh docs cones
 
 Random cones are embedded once and kept in build/cones, so that a run that was stopped goes on where it was; from nothing
 it takes half an hour of two cores. Meshes of ../shared/meshes that are not there are left out."""
@@ -96,31 +96,7 @@ def study(name):
 
 # ------------------------------------------------------------------------------------------------- writing
 
-TEXT = """# Choosing cones
-
-A cone is a vertex where the tiling's pieces meet in a star: n of them at a cone of order n. All else about an unwrap follows
-from the cones, so they decide how large the pattern comes out where. *Suggest Cones* finds good ones; this page says what
-its numbers mean and how well they keep what they promise.
-
-**The spread.** An unwrap that keeps angles must change areas. The number beside a suggestion is the standard deviation of the
-logarithm of that change, over the surface; 0 is an isometry. With 0.5 two thirds of the surface are within a factor of 1.6 of
-the mean area, with 1 within 2.7, with 2 within 7.4. Below 1 it seldom shows.
-
-**Where cones help.** The map swells at a cone, so cones belong where the surface would else be squeezed: at the ends of limbs,
-on noses, ears, tails and corners. In flat or hollow places they do harm. What is far from all cones gets little of the
-tile and a large, blurred pattern. The star itself can be seen if the pattern is not symmetric about it; a vertex group
-that cones keep away from moves them out of sight, at a price that the new number names.
-
-**How many.** Two to four are enough for heads and statues. Each long limb would like one of its own, and `2222` has four. More
-(`22222` and so on) need a tile of the hyperbolic plane whose shape is fixed, so that angles suffer.
-
-**Which signature.** For a picture that repeats take `442`, `333`, `632` or `2222`, the plane's; no others repeat. Among those the
-spread decides. Disks have corners on their border instead (`*442`), and `4*2` or `22*` a cone or two inside.
-
-**Your own.** Pick the vertices that must be cones, and *Suggest Cones* completes them. On a mesh with a mirror plane
-suggestions are symmetric, as far as its vertices allow.
-
-## Measured
+MEASURED = """## Measured
 
 By `./build.sh docs cones`. The one-click suggestion is the best of the plane's signatures; where another one is better, it
 follows. *Predicted* and *measured* are spreads of log area, measured ones from the embedding with conformal weights; *qc* is
@@ -218,11 +194,13 @@ def main():
     if not there:
         sys.exit("error: ../shared/meshes is not there, which this page is about")
     studies = [study(name) for name in there]
-    text = TEXT.format(
+    text = MEASURED.format(
         suggestions="\n".join(suggestion_rows(studies)),
         agreement="\n".join(agreement_rows(studies)),
     )
-    (DOCS / "cones.md").write_text(text, encoding="utf-8")
+    page = DOCS / "cones.md"
+    words = page.read_text(encoding="utf-8").partition("## Measured")[0]
+    page.write_text(words + text, encoding="utf-8")
     (DOCS / "cones.svg").write_text(picture(studies), encoding="utf-8")
 
 

@@ -86,9 +86,13 @@ class MESH_OT_orbifold_show_defect(CheckOperator, bpy.types.Operator):
         if not chosen:
             self.report({"INFO"}, f"There are no {KINDS[self.kind][1]} any more.")
             return {"CANCELLED"}
+        said = f"{chosen[0].text[:1].upper()}{chosen[0].text[1:]}"
+        if obj.mode != "EDIT" and not blender_mesh.is_safe_to_edit(obj.data):
+            self.report({"WARNING"}, f"{said}. Blender may hang if this mesh goes to edit mode: use Validate first.")
+            return {"FINISHED"}
         if obj.mode != "EDIT":
             bpy.ops.object.mode_set(mode="EDIT")
-        self.report({"INFO"}, f"{chosen[0].text[:1].upper()}{chosen[0].text[1:]}.")
+        self.report({"INFO"}, f"{said}.")
         return {"FINISHED"}
 
 

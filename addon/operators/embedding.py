@@ -51,6 +51,12 @@ class EmbeddingOperator(JobOperator):
         options={"SKIP_SAVE"},
     )
 
+    def draw_weights(self) -> None:
+        self.layout.prop(self, "weights")
+        row = self.layout.row()
+        row.active = self.weights in ("conformal", "cotan", "delaunay")
+        row.prop(self, "clamp")
+
     # ----------------------------------------------------------------------------- what subclasses provide
 
     def compute(self, result: core.Result) -> object:

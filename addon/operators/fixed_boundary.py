@@ -6,9 +6,16 @@ from __future__ import annotations
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from .. import arrangement, blender_mesh, cones, core
+from .. import arrangement, blender_mesh, cones, core, surface
 from .jobs import mesh_problem
 from .writing import UVOperator
+
+
+def border_problem(context: bpy.types.Context) -> str | None:
+    problem = mesh_problem(context)
+    if problem is None and not surface.glance(context.active_object.data).loops:
+        problem = "The mesh has no border to fix to a polygon: delete a face"
+    return problem
 
 
 class UV_OT_orbifold_fixed_boundary(UVOperator, bpy.types.Operator):
@@ -44,7 +51,7 @@ class UV_OT_orbifold_fixed_boundary(UVOperator, bpy.types.Operator):
         soft_max=3.0,
     )
 
-    problem = staticmethod(mesh_problem)
+    problem = staticmethod(border_problem)
 
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
@@ -55,7 +62,7 @@ class UV_OT_orbifold_fixed_boundary(UVOperator, bpy.types.Operator):
             layout.prop(self, "radius")
         if getattr(self, "_extra_borders", 0) > 0:
             layout.prop(self, "holes")
-        layout.prop(self, "weights")
+        self.draw_weights()
         self.draw_writing(self.geometry)
 
     def start(self, context: bpy.types.Context) -> core.Job:

@@ -65,8 +65,10 @@ def report_failure(
         if error.status == "ORB_CANCELLED":
             operator.report({"INFO"}, "Orbifold: cancelled, nothing was changed.")
             return
-        if select_culprits(context, context.active_object, arrays, error) and context.active_object.mode != "EDIT":
-            sentence += "; edit mode shows it selected"
+        obj = context.active_object
+        if select_culprits(context, obj, arrays, error) and obj.mode != "EDIT":
+            safe = blender_mesh.is_safe_to_edit(obj.data)
+            sentence += "; edit mode shows it selected" if safe else "; Check Mesh lists it with a mend"
     operator.report({"ERROR"}, f"{sentence[:1].upper()}{sentence[1:]}.")
 
 

@@ -49,8 +49,9 @@ class OBJECT_OT_orbifold_sphere(EmbeddingOperator, bpy.types.Operator):
     def draw(self, _context: bpy.types.Context) -> None:
         layout = self.layout
         layout.use_property_split = True
-        for name in ("signature", "target", "holes", "weights", "clamp"):
+        for name in ("signature", "target", "holes"):
             layout.prop(self, name)
+        self.draw_weights()
 
     def compute(self, result: core.Result) -> object:
         if result.geometry != "spherical":

@@ -43,10 +43,7 @@ class UV_OT_orbifold_unwrap(UVOperator, bpy.types.Operator):
             layout.prop(self, "flat")
         if getattr(self, "_extra_borders", 0) > 0 or self.holes not in ("mesh", "refuse"):
             layout.prop(self, "holes")
-        layout.prop(self, "weights")
-        row = layout.row()
-        row.active = self.weights in ("conformal", "cotan", "delaunay")
-        row.prop(self, "clamp")
+        self.draw_weights()
         self.draw_writing(_geometry(self.signature))
 
     # ------------------------------------------------------------- the stages, of all objects instead of one

@@ -31,13 +31,12 @@ class CheckPanel:
             layout.label(text="The mesh has changed: check again", icon="ERROR")
         if not len(table.rows):
             layout.label(text="Nothing stands in the way", icon="CHECKMARK")
-        column = layout.column(align=True)
-        for row in table.rows:
-            line = column.row(align=True).split(factor=0.58, align=True)
+        for row in table.rows:  # one below the other: side by side they are cut off where the sidebar is narrow
+            column = layout.column(align=True)
             icon = "ERROR" if row.blocks else "INFO"
-            line.operator("mesh.orbifold_show_defect", text=row.text, icon=icon).kind = row.kind
+            column.operator("mesh.orbifold_show_defect", text=row.text, icon=icon).kind = row.kind
             if row.kind in checking.MENDS:
-                mend = line.operator("mesh.orbifold_mend", text=checking.MENDS[row.kind].label)
+                mend = column.operator("mesh.orbifold_mend", text=checking.MENDS[row.kind].label)
                 mend.kind = row.kind
 
 

@@ -33,10 +33,10 @@ def signature_state(signature: str, n_cones: int, n_corners: int = 0) -> Signatu
         return SignatureState(f"This version does not map a mesh onto this orbifold: {words}", False)
     tasks = _tasks(read.n_interior - n_cones, "cone", "inside", n_corners)
     tasks += _tasks(len(read.orders) - read.n_interior - n_corners, "mirror corner", "on the border", n_cones)
-    name = f"{read.geometry.capitalize()} {words}"
+    name = f"{read.geometry.capitalize()}: {words}"
     if tasks:
         unaided = "; or unwrap, and they will be suggested" if not n_cones + n_corners else ""
-        return SignatureState(f"{name}: {' and '.join(tasks)}{unaided}", False)
+        return SignatureState(f"{name}; {' and '.join(tasks)}{unaided}", False)
     if read.curvature > 0:
         return SignatureState(f"{name}; {round(2 / read.euler)} copies cover the sphere", True)
     return SignatureState(name, True)
@@ -73,8 +73,8 @@ class MESH_UL_orbifold_cones(bpy.types.UIList):
 
     def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_property, index=0) -> None:
         row = layout.row(align=True)
-        split = row.split(factor=0.6)
-        split.label(text=f"{index + 1}.  {item.vertex}", icon="MOD_MIRROR" if item.mirror else "VERTEXSEL")
+        split = row.split(factor=0.64)
+        split.label(text=f"{index + 1}.  {item.vertex}", icon="MOD_MIRROR" if item.mirror else "NONE")  # room for digits
         split.prop(item, "order", text="")
         jump = row.operator("mesh.orbifold_jump_to_cone", text="", icon="RESTRICT_SELECT_OFF", emboss=False)
         jump.index = index
@@ -87,7 +87,7 @@ class MESH_UL_orbifold_suggestions(bpy.types.UIList):
 
     def draw_item(self, context, layout, _data, item, _icon, _active_data, _active_property, index=0) -> None:
         placed = suggestions.placed_row(context.active_object.data) == index
-        icons = ("CHECKMARK" if placed else "NONE", "NONE", "NONE")
+        icons = ("CHECKMARK" if placed else "BLANK1", "NONE", "NONE")
         for cell, text, icon in zip(table_columns(layout), table_texts(item), icons):
             cell.operator("mesh.orbifold_place_suggestion", text=text, icon=icon, emboss=False).index = index
 

@@ -14,6 +14,7 @@ typedef struct worker {
     const orb_mesh *mesh;
     const int32_t *parent;
     uint8_t *cut;
+    double *length;            /* [n_edges] */
     int32_t *first, *incident; /* the edges at vertex v: incident[first[v]] ... incident[first[v + 1] - 1] */
     double *distance;          /* [n_vertices] */
     int32_t *tree;             /* [n_vertices] the edge towards the root; -1 */
@@ -25,6 +26,7 @@ typedef struct worker {
 } worker;
 
 static void worker_free(worker *w) {
+    free(w->length);
     free(w->first);
     free(w->incident);
     free(w->distance);
@@ -37,6 +39,7 @@ static void worker_free(worker *w) {
 
 static bool worker_allocate(worker *w) {
     size_t n = (size_t)w->mesh->n_vertices + 2, edges = (size_t)w->mesh->n_edges + 1;
+    w->length = malloc(edges * sizeof *w->length);
     w->first = calloc(n, sizeof *w->first);
     w->incident = malloc(2 * edges * sizeof *w->incident);
     w->distance = malloc(n * sizeof *w->distance);
@@ -45,7 +48,8 @@ static bool worker_allocate(worker *w) {
     w->slot = malloc(n * sizeof *w->slot);
     w->set = malloc(((size_t)w->mesh->n_triangles + 1) * sizeof *w->set);
     w->candidates = malloc(edges * sizeof *w->candidates);
-    return w->first && w->incident && w->distance && w->tree && w->heap && w->slot && w->set && w->candidates;
+    return w->length && w->first && w->incident && w->distance && w->tree && w->heap && w->slot && w->set &&
+           w->candidates;
 }
 
 static int32_t edge_end(const orb_mesh *mesh, int32_t edge, int side) {
@@ -61,8 +65,10 @@ static bool is_inner(const worker *w, int32_t edge) {
     return w->parent && g >= 0 && w->parent[h / 3] >= 0 && w->parent[h / 3] == w->parent[g / 3];
 }
 
-static void list_incident_edges(worker *w) {
+static void list_edges(worker *w) {
     const orb_mesh *mesh = w->mesh;
+    for (int32_t e = 0; e < mesh->n_edges; e++)
+        w->length[e] = mesh_edge_length(mesh, mesh->edge_halfedge[e]);
     for (int32_t e = 0; e < mesh->n_edges; e++)
         for (int side = 0; side < 2; side++)
             w->first[edge_end(mesh, e, side) + 2]++;
@@ -130,7 +136,7 @@ static void grow_tree(worker *w, int32_t root) {
             if (w->slot[u] == -2 || is_inner(w, e))
                 continue;
             bool border = is_border(w->mesh, e);
-            double d = w->distance[v] + (border ? 0 : mesh_edge_length(w->mesh, w->mesh->edge_halfedge[e]));
+            double d = w->distance[v] + (border ? 0 : w->length[e]);
             bool nearer = d < w->distance[u] || (d == w->distance[u] && border && !by_border(w, u));
             if (w->slot[u] >= 0 && !nearer)
                 continue;
@@ -170,6 +176,13 @@ static int longest_first(const void *a, const void *b) {
 static void grow_cotree(worker *w) {
     const orb_mesh *mesh = w->mesh;
     int32_t n = 0;
+    if (mesh->euler == 2) { /* a sphere: beside a tree of vertices there is one of triangles, which crosses all else */
+        memset(w->cut, 0, (size_t)mesh->n_edges);
+        for (int32_t v = 0; v < mesh->n_vertices; v++)
+            if (w->tree[v] >= 0)
+                w->cut[w->tree[v]] = 1;
+        return;
+    }
     for (int32_t t = 0; t < mesh->n_triangles; t++)
         w->set[t] = t;
     memset(w->cut, 1, (size_t)mesh->n_edges);
@@ -179,8 +192,7 @@ static void grow_cotree(worker *w) {
             join(w, e);
             w->cut[e] = 0;
         } else if (!is_border(mesh, e) && w->tree[a] != e && w->tree[b] != e) {
-            double length = mesh_edge_length(mesh, mesh->edge_halfedge[e]);
-            w->candidates[n++] = (candidate){w->distance[a] + w->distance[b] + length, e};
+            w->candidates[n++] = (candidate){w->distance[a] + w->distance[b] + w->length[e], e};
         }
     }
     bool simply_connected = mesh->euler + mesh->n_boundary_loops == 2; /* every loop bounds: no need to sort */
@@ -230,7 +242,7 @@ static int32_t find_root(const orb_mesh *mesh, int32_t n_cones, const int32_t *c
 static double cut_length(const worker *w) {
     double length = 0;
     for (int32_t e = 0; e < w->mesh->n_edges; e++)
-        length += w->cut[e] ? mesh_edge_length(w->mesh, w->mesh->edge_halfedge[e]) : 0;
+        length += w->cut[e] ? w->length[e] : 0;
     return length;
 }
 
@@ -277,7 +289,7 @@ orb_status cut_graph_find(const orb_mesh *mesh, const int32_t *parent, int32_t n
     bool one = mesh->n_boundary_loops > 0 || n_cones == 1 || n_cones == 2; /* the boundary; loops through a cone */
     orb_status status = error_memory(error);
     if (worker_allocate(&w)) {
-        list_incident_edges(&w);
+        list_edges(&w);
         status = try_roots(&w, find_root(mesh, n_cones, cones), one ? 1 : ROOTS, n_cones, cones, error);
     }
     worker_free(&w);

@@ -68,9 +68,12 @@ class Home:
         """name of each check that ran -> what went wrong, or None. Blender is started at the first call."""
         if script not in self._results:
             out = self.folder / f"{script}.json"
-            done = self.run(script, str(out))
+            try:
+                done = self.run(script, str(out))
+                end = f"Blender ended with status {done.returncode}:\n{done.stdout[-3000:]}"
+            except subprocess.TimeoutExpired:  # for all checks: none of them waits again
+                end = f"Blender did not end within {LIMIT} seconds"
             found = json.loads(out.read_text(encoding="utf-8")) if out.exists() else {}
-            end = f"Blender ended with status {done.returncode}:\n{done.stdout[-3000:]}"
             self._results[script] = {**found, "": end}
         return self._results[script]
 

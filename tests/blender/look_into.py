@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""In Blender: what is in a .blend and a .png that `run` wrote. Arguments: ANSWER.json FILE.blend FILE.png"""
+"""In Blender: what is in a .blend and a .png that `run` wrote. Arguments: ANSWER.json FILE.blend
+FILE.png or -"""
 
 import json
 import sys
@@ -47,11 +48,6 @@ def seam_colours():
 
 at_seams = seam_colours()
 seams = sum(edge.use_seam for edge in mesh.edges)
-image = bpy.data.images.load(png)
-pixels = np.empty(len(image.pixels), np.float32)
-image.pixels.foreach_get(pixels)
-pixels = pixels.reshape(image.size[1], image.size[0], -1)[..., :3]
-half = image.size[0] // 2
 seen = {
     "objects": len(bpy.data.objects),
     "vertices": len(mesh.vertices),
@@ -63,12 +59,18 @@ seen = {
     "shape_key_values": [key.value for key in mesh.shape_keys.key_blocks[1:]] if mesh.shape_keys else [],
     "materials": len(mesh.materials),
     "material_reads_uv": any(getattr(node, "uv_map", "") == "Orbifold" for node in nodes),
-    "images_without_data": [other.name for other in bpy.data.images if other is not image and not other.has_data
+    "images_without_data": [other.name for other in bpy.data.images if not other.has_data
                             and other.type == "IMAGE" and len(other.pixels) == 0],
     "seam_colour_gap": float(np.abs(at_seams[:, 0] - at_seams[:, 1]).max(axis=1).mean()) if seams else 0.0,
     "seam_colour_spread": float(at_seams.std(axis=0).mean()) if seams else 1.0,
-    "png_size": list(image.size),
-    "png_spread": [float(pixels[:, :half].std()), float(pixels[:, half:].std())],
 }
+if png != "-":
+    image = bpy.data.images.load(png)
+    pixels = np.empty(len(image.pixels), np.float32)
+    image.pixels.foreach_get(pixels)
+    pixels = pixels.reshape(image.size[1], image.size[0], -1)[..., :3]
+    half = image.size[0] // 2
+    seen["png_size"] = list(image.size)
+    seen["png_spread"] = [float(pixels[:, :half].std()), float(pixels[:, half:].std())]
 with open(answer, "w") as file:
     json.dump(seen, file)

@@ -19,8 +19,8 @@ releases=(trixie sid)                   # Blender 4.3 and 5.2
 die() { echo "error: $*" >&2; exit 1; }
 
 # Blender looks for the libraries of GL while it starts; its extensions' Python modules are not all dependencies.
-packages=(blender libgl1 libegl1 libglx-mesa0 libegl-mesa0 libgl1-mesa-dri python3-cattr python3-numpy python3-pytest
-    python3-requests xauth xvfb)
+packages=(blender imagemagick libgl1 libegl1 libglx-mesa0 libegl-mesa0 libgl1-mesa-dri python3-cattr python3-numpy
+    python3-pytest python3-requests xauth xvfb)
 
 # ---- namespaces
 

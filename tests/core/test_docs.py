@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""docs/orbifolds.md shows every family, its pictures are there and small, and no other file's links lead nowhere."""
+"""docs/orbifolds.md shows every family, pictures are there and small, and no link and no name of a file leads nowhere."""
 
 import re
 import struct
@@ -54,8 +54,34 @@ def test_the_table_of_cones_keeps_what_it_promises():
         assert 1 <= float(angles) < 1.3, name
 
 
+def links(page):
+    """What is named by relative links, and shown."""
+    found = re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8"))
+    return [page.parent / link for link in found if not re.match(r"[a-z]+:", link)]
+
+
 def test_links_lead_somewhere():
     for page in [CHECKOUT / "README.md", *(CHECKOUT / "docs").glob("*.md")]:
-        for link in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8")):
-            if not re.match(r"[a-z]+:", link):
-                assert (page.parent / link).exists(), f"{page.name}: {link}"
+        for link in links(page):
+            assert link.exists(), f"{page.name}: {link}"
+
+
+def test_the_index_has_every_page():
+    docs = CHECKOUT / "docs"
+    assert {path.name for path in links(docs / "README.md")} >= {path.name for path in docs.glob("*.md")} - {"README.md"}
+
+
+def test_pictures_of_the_window_are_small_and_each_is_shown():
+    docs = CHECKOUT / "docs"
+    pictures = set((docs / "window").iterdir())
+    assert pictures and all(path.stat().st_size < 150_000 for path in pictures)
+    assert sum(path.stat().st_size for path in pictures) < 2_000_000
+    assert pictures == {link for page in docs.glob("*.md") for link in links(page) if link.parent.name == "window"}
+
+
+def test_files_that_pages_name_are_there():
+    """In code, with a folder before the name; NAME and the like stand for others."""
+    for page in [CHECKOUT / "README.md", *(CHECKOUT / "docs").glob("*.md")]:
+        for name in re.findall(r"`((?:addon|native|tests|docs)/[^`\s]*)`", page.read_text(encoding="utf-8")):
+            if not re.search(r"[A-Z]{3,}|liborbifold|[*{]", name):
+                assert (CHECKOUT / name).exists(), f"{page.name}: {name}"

@@ -38,71 +38,89 @@ def wait_for_threads(wanted, seconds=120):
     return threads()
 
 
-@pytest.mark.parametrize("reached", [0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.9])
-def test_cancel_takes_less_than_half_a_second(large, reached):
-    before = threads()
-    vertices, triangles, cones = large
-    job = core.start_embedding(vertices, triangles, "2" * 10, cones)
+def poll_until(job, reached):
+    """Until a fraction of the work is done; it must not be over by then."""
     fraction, over = 0.0, False
     while fraction < reached and not over:
         time.sleep(0.001)
-        _, fraction, over = job.poll()
+        stage, fraction, over = job.poll()
+        assert isinstance(stage, str) and 0 <= fraction <= 1
     assert not over
-    start = time.perf_counter()
+
+
+def cancel(job):
+    """The job is over from then on, whatever its thread still does."""
     job.cancel()
     assert job.poll()[2]
     with pytest.raises(core.OrbifoldError) as caught:
         job.finish()
-    assert time.perf_counter() - start < 0.5
     assert caught.value.status == "ORB_CANCELLED"
+
+
+class Asked:
+    """Progress that answers `answer()` once a fraction is reached, and notes how often it was asked for it."""
+
+    def __init__(self, reached, answer):
+        self.reached, self.answer, self.times, self.fraction = reached, answer, 0, 0.0
+
+    def __call__(self, stage, fraction):
+        self.fraction = fraction
+        if fraction < self.reached:
+            return True
+        self.times += 1
+        return self.answer()
+
+
+@pytest.mark.parametrize("reached", [0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.9])
+def test_a_cancelled_job_is_over_at_any_moment(large, reached):
+    before = threads()
+    vertices, triangles, cones = large
+    job = core.start_embedding(vertices, triangles, "2" * 10, cones)
+    poll_until(job, reached)
+    cancel(job)
     assert wait_for_threads(before) == before
 
 
-@pytest.mark.parametrize("returned, after", [(False, 0.0), (False, 0.4)])
-def test_progress_that_returns_false_cancels(large, returned, after):
+@pytest.mark.parametrize("reached", [0.0, 0.2])
+def test_progress_that_returns_false_cancels(large, reached):
     before = threads()
     vertices, triangles, cones = large
-    begun = time.perf_counter()
-    asked = []
-
-    def progress(stage, fraction):
-        if time.perf_counter() - begun >= after:
-            asked.append(time.perf_counter())
-            return returned
-        return None
-
+    asked = Asked(reached, lambda: False)
     with pytest.raises(core.OrbifoldError) as caught:
-        core.embed(vertices, triangles, "2" * 10, cones, progress=progress)
-    assert time.perf_counter() - asked[0] < 0.5 and len(asked) == 1
+        core.embed(vertices, triangles, "2" * 10, cones, progress=asked)
+    assert asked.times == 1
     assert caught.value.status == "ORB_CANCELLED"
     assert wait_for_threads(before) == before
 
 
-def test_exception_in_progress_propagates_at_once(large):
+def test_exception_in_progress_propagates_and_cancels(large):
     before = threads()
     vertices, triangles, cones = large
-    raised = []
 
-    def progress(stage, fraction):
-        raised.append(time.perf_counter())
+    def fail():
         raise ZeroDivisionError("from progress")
 
+    asked = Asked(0.0, fail)
     with pytest.raises(ZeroDivisionError, match="from progress"):
-        core.embed(vertices, triangles, "2" * 10, cones, progress=progress)
-    assert time.perf_counter() - raised[0] < 0.5 and len(raised) == 1
+        core.embed(vertices, triangles, "2" * 10, cones, progress=asked)
+    assert asked.times == 1
     assert wait_for_threads(before) == before
 
 
-def test_interrupt_from_the_keyboard_takes_effect_at_once(large):
+def test_interrupt_from_the_keyboard_takes_effect_before_the_end(large):
     before = threads()
     vertices, triangles, cones = large
     handler = signal.signal(signal.SIGALRM, signal.default_int_handler)
+
+    def soon():
+        signal.setitimer(signal.ITIMER_REAL, 0.005)
+        asked.reached = 2.0
+
+    asked = Asked(0.05, soon)
     try:
-        signal.setitimer(signal.ITIMER_REAL, 0.4)
-        start = time.perf_counter()
         with pytest.raises(KeyboardInterrupt):
-            core.embed(vertices, triangles, "2" * 10, cones)
-        assert time.perf_counter() - start < 0.9
+            core.embed(vertices, triangles, "2" * 10, cones, progress=asked)
+        assert asked.times == 1 and asked.fraction < 0.9
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, handler)
@@ -113,10 +131,8 @@ def test_job_that_is_dropped_is_cancelled(large):
     before = threads()
     vertices, triangles, cones = large
     job = core.start_embedding(vertices, triangles, "2" * 10, cones)
-    start = time.perf_counter()
     del job
     gc.collect()
-    assert time.perf_counter() - start < 0.5
     assert wait_for_threads(before) == before
 
 

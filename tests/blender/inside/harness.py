@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import faulthandler
 import hashlib
 import importlib
 import json
@@ -13,6 +14,8 @@ from typing import Iterable
 import bmesh
 import bpy
 import numpy as np
+
+HANGS = 570  # seconds until a script says where it is, and ends; conftest.py waits a little longer
 
 
 def module_name() -> str:
@@ -25,6 +28,14 @@ def enable() -> object:
     return importlib.import_module(module_name())
 
 
+def install(package: str) -> None:
+    """The zip, as a user does: as an extension where Blender has them, else as an add-on. Extensions are enabled."""
+    if "extensions" in dir(bpy.ops):
+        bpy.ops.extensions.package_install_files(filepath=package, repo="user_default", enable_on_install=True)
+    else:
+        bpy.ops.preferences.addon_install(filepath=package, overwrite=True)
+
+
 def part(name: str):
     return importlib.import_module(f"{module_name()}.{name}")
 
@@ -33,6 +44,7 @@ def run_checks(scope: dict) -> None:
     """Run the functions `check_...` of a script in turn and write name -> traceback or null where conftest.py reads
     it, after each one, so that a crash of Blender loses nothing."""
     out, results = sys.argv[-1], {}
+    faulthandler.dump_traceback_later(HANGS, exit=True)
     for name, function in list(scope.items()):
         if name.startswith("check_"):
             try:
@@ -108,12 +120,18 @@ def _taken(bm: bmesh.types.BMesh) -> tuple[np.ndarray, list[list[int]]]:
 
 
 def far_vertices(obj: bpy.types.Object, count: int) -> list[int]:
-    points = np.array([v.co[:] for v in obj.data.vertices])
+    return far_among(obj.data, range(len(obj.data.vertices)), count)
+
+
+def far_among(mesh: bpy.types.Mesh, vertices: Iterable[int], count: int) -> list[int]:
+    """The first of these vertices, and others of them, each as far as can be from those before it."""
+    among = np.array(vertices)
+    points = np.array([mesh.vertices[vertex].co[:] for vertex in among])
     chosen, nearest = [0], np.full(len(points), np.inf)
     while len(chosen) < count:
         nearest = np.minimum(nearest, np.linalg.norm(points - points[chosen[-1]], axis=1))
         chosen.append(int(nearest.argmax()))
-    return chosen
+    return among[chosen].tolist()
 
 
 def set_cones(obj: bpy.types.Object, signature: str, vertices: Iterable[int] | None = None) -> list[int]:
@@ -188,6 +206,20 @@ def digest(obj: bpy.types.Object) -> str:
     found.update(repr([settings.signature, [(c.vertex, c.order) for c in settings.cones]]).encode())
     found.update(repr([m.name if m else None for m in mesh.materials]).encode())
     return found.hexdigest()
+
+
+def uv_of(obj: bpy.types.Object) -> np.ndarray:
+    """(loops, 2) of the map Orbifold, in any mode; empty where there is none."""
+    mesh = obj.data
+    if obj.mode == "EDIT":
+        bm = bmesh.from_edit_mesh(mesh)
+        layer = bm.loops.layers.uv.get("Orbifold")
+        found = [] if layer is None else [loop[layer].uv[:] for face in bm.faces for loop in face.loops]
+        return np.array(found, np.float32).reshape(-1, 2)
+    values = np.empty(2 * len(mesh.loops) if "Orbifold" in mesh.uv_layers else 0, np.float32)
+    if len(values):
+        mesh.uv_layers["Orbifold"].data.foreach_get("uv", values)
+    return values.reshape(-1, 2)
 
 
 def picked(obj: bpy.types.Object) -> list[tuple[int, int]]:

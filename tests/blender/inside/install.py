@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Install the zip as a user does: as an extension where Blender has them, else as an add-on."""
+"""Installs the zip that is the last argument."""
 
+import os
 import sys
 
-import bpy
+sys.path.insert(0, os.path.dirname(__file__))
+from harness import install  # noqa: E402
 
-package = sys.argv[-1]
-if "extensions" in dir(bpy.ops):
-    bpy.ops.extensions.package_install_files(filepath=package, repo="user_default", enable_on_install=True)
-else:
-    bpy.ops.preferences.addon_install(filepath=package, overwrite=True)
+install(sys.argv[-1])

@@ -409,41 +409,6 @@ def check_api_components():
     assert [one["orbifold"]["signature"] for one in report["components"]] == ["333", "442"]
 
 
-class Layout:
-    """Notes the operators that a menu draws."""
-
-    def __init__(self):
-        self.names = set()
-
-    def __getattr__(self, name):
-        return lambda *words, **settings: self
-
-    def operator(self, name, **settings):
-        self.names.add(name)
-        return type("Settings", (), {})()
-
-    def operator_menu_enum(self, name, _property):
-        self.names.add(name)
-
-
-def check_every_operator_is_in_a_menu_and_can_refuse():
-    """F3 finds what is in menus; poll messages say what is missing."""
-    obj = blob()
-    bpy.ops.mesh.orbifold_suggest_cones()
-    bpy.ops.mesh.orbifold_place_suggestion(index=0)
-    menus, layout = part("panels.menus"), Layout()
-    for menu in (menus.VIEW3D_MT_orbifold, menus.MESH_MT_orbifold_signatures):
-        menu.draw(type("Menu", (), {"layout": layout})(), bpy.context)
-    wanted = {cls.bl_idname for cls in part("operators").CLASSES}
-    assert layout.names == wanted, layout.names ^ wanted
-    bpy.context.view_layer.objects.active = None
-    menus.VIEW3D_MT_orbifold.draw(type("Menu", (), {"layout": Layout()})(), bpy.context)
-    for name in sorted(wanted):
-        group, _, operator = name.partition(".")
-        assert "Make a mesh object active first" in raises(getattr(getattr(bpy.ops, group), operator)), name
-    bpy.context.view_layer.objects.active = obj
-
-
 def check_the_example_in_the_documentation():
     """Run as it stands: it prints what docs/batch.md says."""
     text = (Path(__file__).parents[3] / "docs" / "batch.md").read_text(encoding="utf-8")

@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 
 sys.path.insert(0, os.path.dirname(__file__))
-from harness import enable, module_name, part, run_checks  # noqa: E402
+from harness import blob, enable, module_name, part, raises, run_checks  # noqa: E402
 
 MENUS = ("VIEW3D_MT_uv_map", "IMAGE_MT_uvs")
 
@@ -58,6 +58,107 @@ def check_preferences_say_that_the_library_is_there():
 def check_every_operator_has_a_tooltip():
     for cls in part("operators").CLASSES:
         assert len(cls.bl_description) > 20, cls.bl_idname
+
+
+class Layout:
+    """Notes what is drawn: operators, properties."""
+
+    def __init__(self):
+        self.names = set()
+
+    def __getattr__(self, _name):
+        return lambda *words, **settings: self
+
+    def operator(self, name, **settings):
+        self.names.add(name)
+        return type("Settings", (), {})()
+
+    def operator_menu_enum(self, name, _property):
+        self.names.add(name)
+
+    def prop(self, _data, name, **settings):
+        self.names.add(name)
+
+
+def function_of(name):
+    group, _, operator = name.partition(".")
+    return getattr(getattr(bpy.ops, group), operator)
+
+
+def check_every_operator_is_in_a_menu():
+    """F3 finds what is in menus (searching_window.py)."""
+    obj = blob()
+    bpy.ops.mesh.orbifold_suggest_cones()
+    bpy.ops.mesh.orbifold_place_suggestion(index=0)
+    menus, layout = part("panels.menus"), Layout()
+    for menu in (menus.VIEW3D_MT_orbifold, menus.MESH_MT_orbifold_signatures):
+        menu.draw(type("Menu", (), {"layout": layout})(), bpy.context)
+    wanted = {cls.bl_idname for cls in part("operators").CLASSES}
+    assert layout.names == wanted, layout.names ^ wanted
+    bpy.context.view_layer.objects.active = None
+    menus.VIEW3D_MT_orbifold.draw(type("Menu", (), {"layout": Layout()})(), bpy.context)
+    bpy.context.view_layer.objects.active = obj
+
+
+MISSING = {
+    "mesh.orbifold_add_cones": "Go to edit mode first",
+    "mesh.orbifold_remove_cone": "The mesh has no cones",
+    "mesh.orbifold_move_cone": "The mesh has no cones",
+    "mesh.orbifold_clear_cones": "The mesh has no cones",
+    "mesh.orbifold_jump_to_cone": "Go to edit mode first",
+    "mesh.orbifold_slide_cone": "Go to edit mode first",
+    "mesh.orbifold_place_suggestion": "use Suggest Cones first",
+    "mesh.orbifold_show_stretch": "The mesh has no cones",
+    "mesh.orbifold_show_distortion": "use Orbifold Unwrap first",
+    "mesh.orbifold_hide_distortion": "shows no heat map",
+    "mesh.orbifold_cancel_live": "computes nothing",
+    "mesh.orbifold_show_defect": "use Check Mesh first",
+    "mesh.orbifold_mend": "use Check Mesh first",
+    "uv.orbifold_fixed_boundary": "no border",
+    "object.orbifold_sphere": "Pick at least two cones first",
+    "object.orbifold_tile_preview": "use Orbifold Unwrap first",
+    "object.orbifold_pattern": "use Orbifold Unwrap first",
+}
+ALWAYS = {"uv.orbifold_unwrap", "mesh.orbifold_suggest_cones", "mesh.orbifold_set_signature", "mesh.orbifold_check"}
+
+
+def check_operators_that_cannot_run_say_what_is_missing():
+    obj = blob()
+    assert MISSING.keys() | ALWAYS == {cls.bl_idname for cls in part("operators").CLASSES}
+    for name, message in MISSING.items():
+        assert message in raises(function_of(name)), (name, raises(function_of(name)))
+    assert all(function_of(name).poll() for name in ALWAYS)
+    bpy.ops.object.mode_set(mode="SCULPT")
+    for name in MISSING.keys() | ALWAYS:
+        assert raises(function_of(name)).rstrip().endswith("mode first"), name
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.context.view_layer.objects.active = None
+    for name in MISSING.keys() | ALWAYS:
+        assert "Make a mesh object active first" in raises(function_of(name)), name
+    bpy.context.view_layer.objects.active = obj
+
+
+def check_redo_panels_show_all_settings():
+    """Each setting in one of the situations where it matters; where an operator does not draw them, Blender does."""
+    situations = [
+        {"signature": signature, "geometry": part("core").geometry_of(signature), "kind": kind, "holes": "fill",
+         "weights": "cotan", "_searched": True, "_extra_borders": 1}
+        for signature, kind in (("442", "double"), ("432", "flipped"), ("237", "zero_area"))
+    ]
+    for cls in part("operators").CLASSES:
+        properties = function_of(cls.bl_idname).get_rna_type().properties
+        settings = {p.identifier for p in properties if not p.is_hidden} - {"rna_type"}
+        if cls.bl_idname == "uv.orbifold_fixed_boundary":
+            settings.remove("signature")  # a polygon has none
+        assert not settings or {"REGISTER", "UNDO"} <= cls.bl_options, cls.bl_idname
+        if "draw" not in vars(cls):
+            continue
+        layout = Layout()
+        for situation in situations:
+            stub = type("Stub", (), {name: getattr(cls, name, None) for name in ("draw_weights", "draw_writing")})()
+            vars(stub).update(situation, layout=layout)
+            cls.draw(stub, bpy.context)
+        assert settings == layout.names, (cls.bl_idname, settings ^ layout.names)
 
 
 def check_disabling_leaves_nothing():

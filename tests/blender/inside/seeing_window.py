@@ -9,20 +9,11 @@ import bpy
 import numpy as np
 
 sys.path.insert(0, os.path.dirname(__file__))
-from harness import blob, edit_mode, enable, object_mode, part, set_cones  # noqa: E402
-from windowed import areas, drive, in_view, photograph, press, region_of, show_tab, window  # noqa: E402
+from harness import blob, edit_mode, enable, object_mode, part, set_cones, uv_of  # noqa: E402
+from windowed import areas, drive, in_view, photographed, press, region_of, show_tab, window  # noqa: E402
 
 picture, out = sys.argv[-2:]
 seen = {}
-
-
-def uv_of(obj):
-    """(loops, 2) of the map Orbifold, in edit mode."""
-    import bmesh
-
-    bm = bmesh.from_edit_mesh(obj.data)
-    layer = bm.loops.layers.uv["Orbifold"]
-    return np.array([loop[layer].uv[:] for face in bm.faces for loop in face.loops])
 
 
 def pixels():
@@ -37,20 +28,15 @@ def pixels():
     return np.frombuffer(made, np.uint8).reshape(region.height, region.width, 3).astype(int)
 
 
-def near(image, colour):
-    """How many pixels have nearly this colour in [0, 1]."""
-    return int((np.abs(image - 255 * np.asarray(colour)).max(-1) < 30).sum())
+def counts(colours):
+    """How many pixels of the 3D view have nearly these colours in [0, 1]."""
+    image = pixels()
+    return [int((np.abs(image - 255 * np.asarray(colour)).max(-1) < 30).sum()) for colour in colours]
 
 
-def pause(ticks=20):
+def pause(ticks):
     for _ in range(ticks):
         yield
-
-
-def photographed(name):
-    yield from pause()
-    if picture != "-":
-        photograph(f"{picture}-{name}.png")
 
 
 def steps():
@@ -61,15 +47,12 @@ def steps():
         bpy.ops.view3d.view_axis(type="RIGHT")
         bpy.ops.view3d.view_selected()
         bpy.ops.object.select_all(action="DESELECT")
-    yield from photographed("cones")
-    colours = part("pattern").palette(3)
-    image = pixels()
-    seen["cone_pixels"] = [near(image, colour) for colour in colours]
-    seen["cut_pixels"] = [near(image, colour) for colour in part("overlay").path_colours(2)]
+    yield from photographed(picture, "cones")
+    cones, cut = part("pattern").palette(3), part("overlay").path_colours(2)
+    yield lambda: min(counts(cones)) > 30 and min(counts(cut)) > 200
     bpy.context.scene.orbifold_view.show_cones = bpy.context.scene.orbifold_view.show_cut = False
-    yield from pause()
-    image = pixels()
-    seen["pixels_when_off"] = [near(image, colour) for colour in colours]
+    yield lambda: max(counts(cones)) < 20
+    seen["drawn_and_not_drawn"] = True
     bpy.context.scene.orbifold_view.show_cones = bpy.context.scene.orbifold_view.show_cut = True
     yield from heat_map()
     yield from live(obj)
@@ -82,7 +65,7 @@ def heat_map():
     with in_view():
         bpy.ops.mesh.orbifold_show_distortion(measure="AREA")
     seen["shading"].append(shading.color_type)
-    yield from photographed("heat")
+    yield from photographed(picture, "heat")
     with in_view():
         bpy.ops.mesh.orbifold_hide_distortion()
     seen["shading"].append(shading.color_type)
@@ -118,7 +101,7 @@ def live(obj):
     seen["uv_changed"] = float(np.abs(uv_of(obj) - before).max())
     seen["problems"] = list(state.problems.values())
     bpy.ops.mesh.select_all(action="SELECT")
-    yield from photographed("live")
+    yield from photographed(picture, "live")
     press("RET")
     yield from pause(5)
     for _ in range(2):
@@ -132,7 +115,7 @@ def live(obj):
     obj.data.orbifold.signature = "44"
     yield lambda: not bpy.app.timers.is_registered(part("live")._tick)
     seen["impossible"] = [part("live").problem(obj.data), float(np.abs(uv_of(obj) - before).max())]
-    yield from photographed("impossible")
+    yield from photographed(picture, "impossible")
     obj.data.orbifold.signature = "442"
     yield lambda: not bpy.app.timers.is_registered(part("live")._tick)
     seen["possible_again"] = part("live").problem(obj.data)
@@ -146,7 +129,7 @@ def tile():
         bpy.ops.object.select_all(action="SELECT")
         bpy.ops.view3d.view_axis(type="FRONT")
         bpy.ops.view3d.view_selected()
-    yield from photographed("tile")
+    yield from photographed(picture, "tile")
 
 
 enable()

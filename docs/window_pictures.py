@@ -1,0 +1,324 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures of the real window for the user guide, of the sample creature; make_window_pictures.sh starts this inside
+Blender. Arguments: the folder to write to, and the names of pictures, all if there is none.
+
+Each function of SCENES does the steps of one picture (picture_window.py)."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from collections.abc import Callable, Generator, Sequence
+
+import bmesh
+import bpy
+import numpy as np
+from mathutils import Vector
+
+sys.path.insert(0, os.path.dirname(__file__))
+from picture_window import (  # noqa: E402
+    area_of, arrange, away, click, drive, inside, look, no_uv_editor, pause, photograph, pointer, press, region_of,
+    SCALE, scroll, set_up, shade, tab, uv_editor, window,
+)
+
+NAME = "orbifold_uv"
+PLACES = {  # of vertices on the creature: the nearest one is picked
+    "ear": (0.82, -0.74, 3.34), "other ear": (-0.82, -0.74, 3.34), "tail": (0, 1.02, 2.52),
+}
+folder, wanted = sys.argv[sys.argv.index("--") + 1], sys.argv[sys.argv.index("--") + 2 :]
+
+
+def part(name: str):
+    return importlib.import_module(f"{NAME}.{name}")
+
+
+# ----------------------------------------------------------------------------------------------------- the mesh
+
+
+def creature(subdivisions: int = 3) -> bpy.types.Object:
+    """A new one, the only object, active."""
+    if bpy.context.object is not None and bpy.context.object.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    for data in (bpy.data.objects, bpy.data.meshes, bpy.data.materials, bpy.data.images):
+        for item in list(data):
+            data.remove(item)
+    sample = part("headless.sample")
+    sample.SUBDIVISIONS = subdivisions
+    obj = sample.make_creature()
+    bpy.context.view_layer.objects.active = obj
+    obj.select_set(True)
+    bpy.ops.ed.undo_push(message="creature")
+    return obj
+
+
+def nearest(obj: bpy.types.Object, place: tuple[float, float, float]) -> int:
+    points = np.empty(3 * len(obj.data.vertices))
+    obj.data.vertices.foreach_get("co", points)
+    return int(np.linalg.norm(points.reshape(-1, 3) - place, axis=1).argmin())
+
+
+def pick(obj: bpy.types.Object, places: Sequence[str]) -> None:
+    """Go to edit mode and click these vertices in turn."""
+    vertices = [nearest(obj, PLACES[place]) for place in places]
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="DESELECT")
+    bm = bmesh.from_edit_mesh(obj.data)
+    bm.verts.ensure_lookup_table()
+    bm.select_history.clear()
+    for vertex in vertices:
+        bm.verts[vertex].select = True
+        bm.select_history.add(bm.verts[vertex])
+    bmesh.update_edit_mesh(obj.data)
+
+
+def unwrap(obj: bpy.types.Object, **settings) -> Generator:
+    """As by the button, and wait until it is done."""
+    before = obj.data.orbifold.unwraps
+    with inside():
+        bpy.ops.uv.orbifold_unwrap("INVOKE_DEFAULT", True, **settings)
+    yield lambda: obj.data.orbifold.unwraps != before
+    yield
+
+
+def fit_uv() -> None:
+    with inside("IMAGE_EDITOR"):
+        bpy.ops.image.view_all(fit_view=True)
+
+
+# ---------------------------------------------------------------------------------------------------- the scenes
+
+
+def one_click() -> Generator:
+    yield from bare()
+    yield from unwrap(bpy.context.object)
+    yield from photograph(f"{folder}/one_click.png")
+
+
+def redo() -> Generator:
+    """The panel of the last operator, unfolded by a click on its title."""
+    yield from bare()
+    look(SIDE, (0, 0.4, 0.8), 1.3 * FAR)
+    yield from unwrap(bpy.context.object)
+    yield from pause()
+    region = region_of("VIEW_3D", "HUD")
+    title = (region.x + region.width // 2, region.y + region.height // 2)
+    yield from click(*title)
+    yield from away()
+    yield from photograph(f"{folder}/redo.png")
+    yield from click(title[0], region.y + region.height - 12)
+    yield from away()
+
+
+def picking() -> Generator:
+    yield from bare(1)
+    pick(bpy.context.object, EARS_AND_TAIL)
+    with inside():
+        bpy.ops.mesh.orbifold_add_cones("INVOKE_DEFAULT", True)
+    yield from photograph(f"{folder}/picking.png")
+
+
+def signatures() -> Generator:
+    """The menu beside the signature."""
+    yield from bare(1)
+    pick(bpy.context.object, EARS_AND_TAIL)
+    with inside():
+        bpy.ops.mesh.orbifold_add_cones("INVOKE_DEFAULT", True)
+    bpy.context.preferences.view.ui_scale = 0.95  # for three columns side by side
+    yield from pause()
+    yield from pointer(window().width // 2, 0.6 * window().height)
+    with inside():
+        bpy.ops.wm.call_menu(name="MESH_MT_orbifold_signatures")
+    yield from photograph(f"{folder}/signatures.png", (0.004, 0.338, 0.853, 0.813))
+    press("ESC")
+    bpy.context.preferences.view.ui_scale = SCALE
+    yield from pause()
+
+
+def layout() -> Generator:
+    """Edit mode, with the layout beside the mesh."""
+    yield from beside()
+    yield from photograph(f"{folder}/layout.png")
+
+
+def heat() -> Generator:
+    yield from three_cones()
+    with inside():
+        bpy.ops.mesh.orbifold_show_distortion(measure="AREA")
+    yield from tab("Show")
+    yield from photograph(f"{folder}/heat.png")
+    with inside():
+        bpy.ops.mesh.orbifold_hide_distortion()
+
+
+def pattern() -> Generator:
+    """The tile preview, and a pattern over mesh and tile."""
+    yield from three_cones()
+    bpy.context.scene.orbifold_view.pattern = "QUADS"
+    with inside():
+        bpy.ops.object.orbifold_pattern("INVOKE_DEFAULT", True)
+        bpy.ops.object.orbifold_tile_preview("INVOKE_DEFAULT", True)
+    yield from tab("Show")
+    look((80, 0, 10), (2.8, 0, 1.7), 1.6 * FAR)
+    shade("MATERIAL")
+    yield from pause(40)
+    yield from photograph(f"{folder}/pattern.png", (0, 0, 1, 0.85))
+
+
+def suggesting() -> Generator:
+    """The table of suggestions, and the stretch that the first one promises."""
+    yield from bare()
+    obj = bpy.context.object
+    with inside():
+        bpy.ops.mesh.orbifold_suggest_cones("INVOKE_DEFAULT", True)
+    yield lambda: len(obj.data.orbifold.suggestions.rows)
+    with inside():
+        bpy.ops.mesh.orbifold_place_suggestion("INVOKE_DEFAULT", True, index=0)
+        bpy.ops.mesh.orbifold_show_stretch()
+    yield from photograph(f"{folder}/suggesting.png")
+    with inside():
+        bpy.ops.mesh.orbifold_hide_distortion()
+
+
+def checking() -> Generator:
+    """A mesh with faults: a hole, a doubled face, a flipped one."""
+    yield from bare(1)
+    obj = bpy.context.object
+    bm = bmesh.new()
+    bm.from_mesh(obj.data)
+    bm.faces.ensure_lookup_table()
+    near = sorted(bm.faces, key=lambda face: (face.calc_center_median() - Vector((0.5, -0.2, 1.3))).length)
+    near[0].normal_flip()
+    fin = bm.verts.new(near[6].calc_center_median() + Vector((0.5, -0.1, 0.3)))
+    bm.faces.new((*near[6].edges[0].verts, fin))
+    bmesh.ops.delete(bm, geom=near[12:15], context="FACES")
+    bm.to_mesh(obj.data)
+    bm.free()
+    with inside():
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.orbifold_check("INVOKE_DEFAULT", True)
+    yield from scroll(12)
+    yield from photograph(f"{folder}/checking.png")
+    yield from scroll(-12)
+
+
+def painting() -> Generator:
+    """The image that the script of painting.md makes, and the creature's neck, where the cut runs through it."""
+    yield from petals()
+    yield from photograph(f"{folder}/painting.png")
+    area_of("VIEW_3D").spaces.active.show_region_ui = True
+    yield
+
+
+def stroke() -> Generator:
+    """A stroke of the brush across the cut."""
+    yield from petals()
+    image, region = bpy.data.images["Petals"], region_of("VIEW_3D")
+    before = pixels_of(image)
+    with inside():
+        bpy.ops.object.mode_set(mode="TEXTURE_PAINT")
+        bpy.context.tool_settings.image_paint.brush.color = (1.0, 1.0, 1.0)
+        bpy.ops.paint.image_paint(stroke=[
+            {"name": "", "location": (0, 0, 0), "mouse": place, "mouse_event": place, "x_tilt": 0.0, "y_tilt": 0.0,
+             "pressure": 1.0, "size": 25, "pen_flip": False, "time": 0.05 * number, "is_start": number == 0}
+            for number, place in enumerate((x * region.width, 0.35 * region.height) for x in np.linspace(0.45, 0.7, 20))
+        ])
+    yield from pause(40)
+    changed = np.abs(pixels_of(image) - before).max(2) > 0.01
+    followed = [int((changed & np.rot90(changed, quarter)).sum()) for quarter in (1, 2, 3)]
+    print(f"picture: {changed.sum()} pixels painted, of which their copies have {followed}", flush=True)
+    yield from photograph(f"{folder}/stroke.png")
+    bpy.ops.object.mode_set(mode="OBJECT")
+    area_of("VIEW_3D").spaces.active.show_region_ui = True
+    yield
+
+
+SIDE, MIDDLE, FAR = (72, 0, 62), (0, 0, 1.75), 5.6  # how the creature is looked at
+EARS_AND_TAIL = ("ear", "other ear", "tail")
+SCENES: dict[str, Callable[[], Generator]] = {
+    scene.__name__: scene
+    for scene in (
+        one_click, redo, picking, signatures, layout, heat, pattern, suggesting, checking, painting, stroke,
+    )
+}
+
+
+def bare(subdivisions: int = 3) -> Generator:
+    """The creature as it is, in object mode; the 3D view with the panel of cones."""
+    creature(subdivisions)
+    yield from no_uv_editor()
+    yield from tab("Orbifold UV")
+    shade("SOLID")
+    look(SIDE, MIDDLE, FAR)
+
+
+def three_cones() -> Generator:
+    """The creature in object mode, unwrapped as 442."""
+    yield from bare()
+    obj = bpy.context.object
+    pick(obj, EARS_AND_TAIL)
+    with inside():
+        bpy.ops.mesh.orbifold_add_cones()
+    obj.data.orbifold.signature = "442"
+    bpy.ops.object.mode_set(mode="OBJECT")
+    yield from unwrap(obj)
+
+
+def petals() -> Generator:
+    """The creature with the image of painting.md, which is beside it."""
+    yield from three_cones()
+    with open(os.path.join(os.path.dirname(__file__), "painting.md"), encoding="utf-8") as page:
+        script = page.read().partition("```python\n")[2].partition("```")[0]
+    exec(compile(script, "painting.md", "exec"), {})
+    yield from uv_editor(0.45)
+    area_of("IMAGE_EDITOR").ui_type = "IMAGE_EDITOR"
+    yield
+    space = area_of("IMAGE_EDITOR").spaces.active
+    space.image, space.show_region_ui, space.show_region_toolbar = bpy.data.images["Petals"], False, False
+    area_of("VIEW_3D").spaces.active.show_region_ui = False
+    fit_uv()
+    look((55, 0, 160), (0.1, -0.6, 2.1), 2.4)
+    shade("MATERIAL")
+    yield from pause(40)
+
+
+def pixels_of(image: bpy.types.Image) -> np.ndarray:
+    pixels = np.empty((image.size[1], image.size[0], 4), np.float32)
+    image.pixels.foreach_get(pixels.ravel())
+    return pixels
+
+
+def beside() -> Generator:
+    """A coarse creature in edit mode, unwrapped as 442, and its layout."""
+    yield from bare(1)
+    obj = bpy.context.object
+    yield from uv_editor()
+    bpy.context.tool_settings.use_uv_select_sync = True
+    look(SIDE, MIDDLE, 1.4 * FAR)
+    pick(obj, EARS_AND_TAIL)
+    with inside():
+        bpy.ops.mesh.orbifold_add_cones("INVOKE_DEFAULT", True)
+    obj.data.orbifold.signature = "442"
+    yield from unwrap(obj)
+    bpy.ops.mesh.select_all(action="SELECT")
+    yield
+    with inside("IMAGE_EDITOR"):
+        bpy.ops.image.view_selected()
+    bpy.ops.mesh.select_all(action="DESELECT")
+    yield
+
+
+# ------------------------------------------------------------------------------------------------------- driving
+
+
+def steps() -> Generator:
+    yield from pause()
+    yield from arrange()
+    for name in wanted or SCENES:
+        print(f"picture: {name}", flush=True)
+        yield from SCENES[name]()
+
+
+bpy.ops.preferences.addon_enable(module=NAME)
+set_up()
+drive(steps())
