@@ -13,11 +13,11 @@ bl_info = {
 
 import bpy
 
-from . import cli, handlers, live, operators, panels, preferences, previews, properties, surface, viewing
-from .api import OrbifoldError, check, sphere, suggest, unwrap
+from . import cli, handlers, live, operators, panels, preferences, previews, properties, surface, transfer_settings, viewing
+from .api import OrbifoldError, check, sphere, suggest, transfer, unwrap
 from .panels import menus
 
-__all__ = ["OrbifoldError", "check", "sphere", "suggest", "unwrap"]
+__all__ = ["OrbifoldError", "check", "sphere", "suggest", "transfer", "unwrap"]
 
 CLASSES = (*preferences.CLASSES, *operators.CLASSES, *panels.CLASSES)
 
@@ -29,6 +29,7 @@ def register() -> None:
     menus.register()
     handlers.register()
     viewing.register()
+    transfer_settings.register()
     live.register()
     cli.register()
 
@@ -36,6 +37,7 @@ def register() -> None:
 def unregister() -> None:
     cli.unregister()
     live.unregister()
+    transfer_settings.unregister()
     viewing.unregister()
     handlers.unregister()
     menus.unregister()

@@ -23,9 +23,10 @@ import bpy
 
 from . import blender_mesh, checking, cones as cone_lists, core, suggestions
 from .core import OrbifoldError
+from .transferring import Transferring, Wishes
 from .unwrapping import Settings, Unwrapping
 
-__all__ = ["OrbifoldError", "check", "sphere", "suggest", "unwrap"]
+__all__ = ["OrbifoldError", "check", "sphere", "suggest", "transfer", "unwrap"]
 
 
 def unwrap(
@@ -137,15 +138,66 @@ def check(obj: bpy.types.Object) -> dict:
     return {"object": obj.name, "ready": not any(defect.blocks for defect in found), "defects": defects}
 
 
+def transfer(
+    source: bpy.types.Object,
+    targets: bpy.types.Object | Sequence[bpy.types.Object],
+    landmarks: Optional[Sequence[Sequence[int]]] = None,
+    *,
+    groups: bool = True,
+    colours: bool = True,
+    attributes: bool = True,
+    uv_maps: bool = True,
+    form: bool = False,
+    form_back: bool = False,
+    shape_keys: bool = False,
+    heat: bool = False,
+    signature: str = "",
+    weights: str = "conformal",
+    clamp: float = 0.01,
+    holes: Optional[str] = None,
+    progress: Optional[core.Progress] = None,
+) -> dict:
+    """What the source's mesh has -> the targets' meshes, by maps that are one to one and take landmarks to landmarks.
+    The report: `source`, `signature`, `geometry`, and `targets`, for each `object`, `written` (names, by kind),
+    `crossing_faces` (that a seam of the source's UV maps runs through), `locked_groups`, `distortion`, `flipped`,
+    `landmark_residual`, `bijective`. Where one target fails nothing is written to any.
+
+    landmarks   for the source and each target as many vertices, those that correspond in the same places (core has
+                landmark_sequence for a good sequence); None: the cones of the meshes
+    groups ... heat   what is written, as the check boxes of the panel Transfer
+    signature   empty: by the number of landmarks
+    weights, clamp   as core.embed; holes: None: the choice that is kept with each mesh
+    progress    called as progress(stage, fraction), for each mesh in turn; returning False cancels (ORB_CANCELLED)
+    """
+    chosen = [targets] if isinstance(targets, bpy.types.Object) else list(targets)
+    if landmarks is not None and len(landmarks) != 1 + len(chosen):
+        raise OrbifoldError(
+            "ORB_BAD_ARGUMENT", f"there are {len(landmarks)} lists of landmarks for {1 + len(chosen)} meshes: give one "
+            "for each, that of the source first"
+        )
+    wishes = Wishes(
+        groups=groups, colours=colours, attributes=attributes, uv_maps=uv_maps, form=form, form_back=form_back,
+        shape_keys=shape_keys, heat=heat, signature=signature, weights=weights, clamp=clamp, holes=holes,
+    )
+    with _expected(source, *chosen):
+        work = Transferring(source, chosen, wishes, landmarks)
+        job = work.start()
+        while job is not None:
+            core.wait_until_over(job, progress)
+            job = work.proceed(job)
+        work.write()
+        return work.report()
+
+
 # ------------------------------------------------------------------------------------------------------ inside
 
 
 @contextmanager
-def _expected(obj: bpy.types.Object) -> Iterator[None]:
+def _expected(*objects: bpy.types.Object) -> Iterator[None]:
     """Everything that is for the caller to mend is an OrbifoldError."""
-    if not isinstance(obj, bpy.types.Object) or obj.type != "MESH":
+    if not all(isinstance(obj, bpy.types.Object) and obj.type == "MESH" for obj in objects):
         raise OrbifoldError("ORB_BAD_ARGUMENT", "this is no mesh object: give one, as bpy.data.objects['Cube']")
-    if not hasattr(obj.data, "orbifold"):
+    if not hasattr(bpy.types.Mesh, "orbifold"):
         raise OrbifoldError("ORB_BAD_ARGUMENT", "the add-on Orbifold UV is not enabled: enable it in the preferences")
     try:
         yield

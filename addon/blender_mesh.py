@@ -194,12 +194,26 @@ def write_uv(
         others = np.ones(arrays.n_loops, bool)
         others[arrays.loops.ravel()] = False
         corners[others] = read_uv(mesh, name)[others]
+    _set_uv(layer, corners)
+    mesh.uv_layers.active = mesh.uv_layers[name]
+    mesh.update()
+
+
+def write_uv_of_loops(mesh: bpy.types.Mesh, uv: np.ndarray, among: np.ndarray, name: str) -> None:
+    """`uv` (loops, 2) of the corners `among` (loops,) bool -> the UV map `name`, created or replaced; the active one
+    stays active, and other corners have what they had."""
+    active = mesh.uv_layers.active.name if mesh.uv_layers.active is not None else name
+    layer = _uv_layer(mesh, name)
+    _set_uv(layer, np.where(among[:, None], uv, read_uv(mesh, name)).astype(np.float32))
+    mesh.uv_layers.active = mesh.uv_layers[active]
+    mesh.update()
+
+
+def _set_uv(layer: bpy.types.MeshUVLoopLayer, corners: np.ndarray) -> None:
     if hasattr(layer, "uv"):
         layer.uv.foreach_set("vector", corners.ravel())
     else:
         layer.data.foreach_set("uv", corners.ravel())
-    mesh.uv_layers.active = mesh.uv_layers[name]
-    mesh.update()
 
 
 def _at_loops(arrays: MeshArrays, uv: np.ndarray) -> np.ndarray:
@@ -418,11 +432,79 @@ def read_group_weights(mesh: bpy.types.Mesh, group: int) -> np.ndarray:
     )
 
 
-def check_attribute(mesh: bpy.types.Mesh, name: str, data_type: str) -> None:
-    """Raise BlenderMeshError where there is an attribute of this name that is no vertex attribute of this type."""
+def read_all_group_weights(mesh: bpy.types.Mesh, count: int) -> np.ndarray:
+    """(n, count) float64 the weight of each vertex in each of so many vertex groups; 0 where it is not a member."""
+    weights = np.zeros((len(mesh.vertices), count))
+    for number, vertex in enumerate(mesh.vertices):
+        for member in vertex.groups:
+            if member.group < count:
+                weights[number, member.group] = member.weight
+    return weights
+
+
+def write_group_weights(obj: bpy.types.Object, name: str, weights: np.ndarray, among: np.ndarray) -> None:
+    """`weights` (n,) of the vertices `among` (n,) bool -> a vertex group, created or changed; where they are 0 a vertex
+    is no member."""
+    group = obj.vertex_groups.get(name) or obj.vertex_groups.new(name=name)
+    members = among & (weights > 0)
+    group.remove(np.flatnonzero(among & ~members).tolist())
+    for vertex in np.flatnonzero(members).tolist():
+        group.add((vertex,), weights[vertex], "REPLACE")
+
+
+def check_attribute(mesh: bpy.types.Mesh, name: str, data_type: str, domain: str = "POINT") -> None:
+    """Raise BlenderMeshError where there is an attribute of this name that is not of this domain and type."""
     attribute = mesh.attributes.get(name)
-    if attribute is not None and (attribute.domain != "POINT" or attribute.data_type != data_type):
+    if attribute is not None and (attribute.domain != domain or attribute.data_type != data_type):
         raise BlenderMeshError(f'The mesh has another attribute "{name}": rename it')
+
+
+# Of types of attributes: what their elements call the value, its width, and what foreach_get takes.
+_VALUES = {
+    "FLOAT": ("value", 1, np.float32),
+    "FLOAT2": ("vector", 2, np.float32),
+    "FLOAT_VECTOR": ("vector", 3, np.float32),
+    "FLOAT_COLOR": ("color", 4, np.float32),
+    "BYTE_COLOR": ("color", 4, np.float32),
+    "INT": ("value", 1, np.int32),
+    "BOOLEAN": ("value", 1, bool),
+}
+_OF_BLENDER = {"position", "material_index", "shade_smooth", "sharp_edge", "sharp_face", "custom_normal"}
+
+
+def plain_attributes(mesh: bpy.types.Mesh) -> list[tuple[str, str, str]]:
+    """(name, domain, type) of the attributes of vertices and corners that a person or a tool has made, of the types that
+    can be read here: no UV maps, nothing of Blender's own."""
+    found = [(attribute.name, attribute.domain, attribute.data_type) for attribute in mesh.attributes]
+    return [
+        (name, domain, kind) for name, domain, kind in found
+        if domain in ("POINT", "CORNER") and kind in _VALUES and not name.startswith(".")
+        and name not in _OF_BLENDER and name not in mesh.uv_layers
+    ]
+
+
+def read_attribute(mesh: bpy.types.Mesh, name: str) -> np.ndarray:
+    """(elements, width) of an attribute; colours are linear."""
+    attribute = mesh.attributes[name]
+    what, width, kind = _VALUES[attribute.data_type]
+    values = np.empty(len(attribute.data) * width, kind)
+    attribute.data.foreach_get(what, values)
+    return values.reshape(-1, width)
+
+
+def write_attribute(
+    mesh: bpy.types.Mesh, name: str, domain: str, data_type: str, values: np.ndarray, among: np.ndarray
+) -> None:
+    """`values` (elements, width) of the elements `among` (elements,) bool -> an attribute, created or changed
+    (check_attribute)."""
+    if name not in mesh.attributes:
+        mesh.attributes.new(name, data_type, domain)
+    what, _, kind = _VALUES[data_type]
+    mixed = np.where(among[:, None], values, read_attribute(mesh, name)).astype(kind)
+    mesh.attributes[name].data.foreach_set(what, np.ascontiguousarray(mixed).ravel())
+    if what == "color" and mesh.color_attributes.active_color is None:
+        mesh.color_attributes.active_color = mesh.color_attributes[name]
+    mesh.update()
 
 
 def write_float_attribute(mesh: bpy.types.Mesh, name: str, values: np.ndarray) -> None:

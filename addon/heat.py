@@ -39,7 +39,8 @@ ANGLE = Measure(
     *("Angle distortion", "orbifold_angle", "Orbifold Angle", 5.0),
     tuple((float(np.log(factor)), f"{factor:g}") for factor in (1, 1.05, 1.15, 1.3, 1.6)),
 )
-MEASURES = (STRETCH, AREA, ANGLE)
+MAP = Measure("Angle distortion of the map", "orbifold_map", "Orbifold Map", ANGLE.gain, ANGLE.ticks)
+MEASURES = (STRETCH, AREA, ANGLE, MAP)
 
 
 def colours_of(scale: np.ndarray) -> np.ndarray:

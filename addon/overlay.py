@@ -125,11 +125,13 @@ def _drawn(context: bpy.types.Context, obj: bpy.types.Object) -> _Drawn:
 
 
 def _cone_colours(mesh: bpy.types.Mesh, cones: tuple) -> np.ndarray:
-    """Those of the pattern, which follow the sequence of the signature."""
+    """Those of the pattern, which follow the sequence of the signature: on all meshes that of the list, but for corners,
+    and whatever was unwrapped before."""
     colours = pattern.palette(max(len(cones), pattern.LEAST_CENTRES))
     latest = layouts.latest(mesh)
     places = layouts.cone_places(latest) if latest is not None else {}
-    if set(places) != {vertex for vertex, _ in cones}:
+    inside = [places.get(item.vertex, -1) for item in mesh.orbifold.cones if not item.mirror]
+    if set(places) != {vertex for vertex, _ in cones} or inside != sorted(inside):
         return colours[: len(cones)]
     return np.array([colours[places[vertex]] for vertex, _ in cones]).reshape(-1, 3)
 
@@ -274,7 +276,8 @@ def _scale(context: bpy.types.Context) -> float:
 
 
 def draw_texts() -> None:
-    """Orders beside the cones; the legend of a heat map."""
+    """Orders beside the cones, and where several meshes with cones are selected, for Orbifold Transfer, their places in
+    the list; the legend of a heat map."""
     context = bpy.context
     settings = _settings(context)
     if settings is None:
@@ -283,14 +286,17 @@ def draw_texts() -> None:
     if not settings.show_cones:
         return
     view = np.array(context.region_data.view_matrix)
-    for obj in _objects(context):
+    objects = list(_objects(context))
+    several = sum(obj.select_get() and bool(len(obj.data.orbifold.cones)) for obj in objects) > 1
+    for obj in objects:
         drawn = _drawn(context, obj)
         turned = (view[:3, :3] @ np.array(obj.matrix_world)[:3, :3]) @ drawn.normals.T
         for number, (_, order) in enumerate(drawn.cones):
             place = obj.matrix_world @ Vector(drawn.places[number])
             at = location_3d_to_region_2d(context.region, context.region_data, place)
             if at is not None:
-                _write(context, at, str(order), 1.0 if turned[2, number] >= 0 else 0.4)
+                text = f"{number + 1}." if several and obj.select_get() else str(order)
+                _write(context, at, text, 1.0 if turned[2, number] >= 0 else 0.4)
 
 
 def _write(context: bpy.types.Context, at: Vector, text: str, opacity: float) -> None:

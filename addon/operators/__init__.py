@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Operators, one idea a file."""
 
-from . import check, cones, fixed_boundary, sliding, sphere, stretch, suggesting, unwrap, viewing
+from . import check, cones, fixed_boundary, sliding, sphere, stretch, suggesting, transfer, unwrap, viewing
 
 CLASSES = (
     *cones.CLASSES,
@@ -13,4 +13,5 @@ CLASSES = (
     *viewing.CLASSES,
     *sliding.CLASSES,
     *check.CLASSES,
+    *transfer.CLASSES,
 )

@@ -11,6 +11,20 @@ import bpy
 from .. import arrangement, blender_mesh, cones, core, properties
 from .jobs import JobOperator
 
+WEIGHTS = dict(
+    name="Weights",
+    description="How strongly each edge of the mesh pulls",
+    items=(
+        ("conformal", "Conformal", "Cotangents of the target's own metric: least angle distortion"),
+        ("cotan", "Cotangent", "Those of the mesh, negative ones clamped: the papers' weights, and faster"),
+        ("mean-value", "Mean Value", "Positive by themselves, no clamping"),
+        ("uniform", "Uniform", "All edges alike: ignores the shape of the triangles"),
+        ("delaunay", "Delaunay", "Cotangents on the intrinsic Delaunay triangulation, positive by themselves"),
+        ("mean-value-exact", "Mean Value, Exact", "Floater's weights as they stand, not symmetric: plane only"),
+    ),
+    default="conformal",
+)
+
 
 class EmbeddingOperator(JobOperator):
     """Mix-in. `signature` and the settings of the computation; see unwrap.py and sphere.py."""
@@ -21,19 +35,7 @@ class EmbeddingOperator(JobOperator):
         "list, and for each mirror corner, along the border. Empty: that of the mesh",
         options={"SKIP_SAVE"},
     )
-    weights: bpy.props.EnumProperty(
-        name="Weights",
-        description="How strongly each edge of the mesh pulls",
-        items=(
-            ("conformal", "Conformal", "Cotangents of the target's own metric: least angle distortion"),
-            ("cotan", "Cotangent", "Those of the mesh, negative ones clamped: the papers' weights, and faster"),
-            ("mean-value", "Mean Value", "Positive by themselves, no clamping"),
-            ("uniform", "Uniform", "All edges alike: ignores the shape of the triangles"),
-            ("delaunay", "Delaunay", "Cotangents on the intrinsic Delaunay triangulation, positive by themselves"),
-            ("mean-value-exact", "Mean Value, Exact", "Floater's weights as they stand, not symmetric: plane only"),
-        ),
-        default="conformal",
-    )
+    weights: bpy.props.EnumProperty(**WEIGHTS)
     clamp: bpy.props.FloatProperty(
         name="Clamp",
         description="Least cotangent weight. Smaller is more conformal, but thin triangles may collapse",

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sidebar and menus."""
 
-from . import check, menus, sidebar, viewing
+from . import check, menus, sidebar, transfer, viewing
 
-CLASSES = (*menus.CLASSES, *sidebar.CLASSES, *viewing.CLASSES, *check.CLASSES)
+CLASSES = (*menus.CLASSES, *sidebar.CLASSES, *viewing.CLASSES, *transfer.CLASSES, *check.CLASSES)

@@ -107,6 +107,7 @@ MENU_GROUPS = (
      "mesh.orbifold_clear_cones", "mesh.orbifold_jump_to_cone"),
     ("mesh.orbifold_show_stretch", "mesh.orbifold_show_distortion", "object.orbifold_tile_preview",
      "object.orbifold_pattern"),
+    ("object.orbifold_transfer", "object.orbifold_suggest_order"),
     ("mesh.orbifold_hide_distortion", "mesh.orbifold_cancel_live", "mesh.orbifold_check"),
 )
 UV_MENUS = ("VIEW3D_MT_uv_map", "IMAGE_MT_uvs")

@@ -118,6 +118,8 @@ MISSING = {
     "object.orbifold_sphere": "Pick at least two cones first",
     "object.orbifold_tile_preview": "use Orbifold Unwrap first",
     "object.orbifold_pattern": "use Orbifold Unwrap first",
+    "object.orbifold_transfer": "Select the meshes that are to get something too",
+    "object.orbifold_suggest_order": "Select the meshes that are to get something too",
 }
 ALWAYS = {"uv.orbifold_unwrap", "mesh.orbifold_suggest_cones", "mesh.orbifold_set_signature", "mesh.orbifold_check"}
 

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is ticked for Orbifold Transfer: the same settings in the redo panel and, kept with the scene, in the sidebar."""
+
+from __future__ import annotations
+
+import bpy
+from bpy.props import BoolProperty, PointerProperty, StringProperty
+
+GROUPS = dict(
+    name="Vertex Groups", default=True,
+    description="Weights, interpolated, by the groups' names. Groups that are locked on a target stay as they are",
+)
+COLOURS = dict(name="Colours", default=True, description="Colour attributes, of vertices and of face corners")
+ATTRIBUTES = dict(
+    name="Attributes", default=True,
+    description="All other attributes of vertices and face corners: numbers and vectors are interpolated, whole numbers "
+    "and booleans are those of the nearest corner",
+)
+UV_MAPS = dict(
+    name="UV Maps", default=True,
+    description="Faces that a seam of the source runs through continue the island of their middle, and are selected",
+)
+FORM = dict(
+    name="Form as a Shape Key", default=False,
+    description="Give each target a shape key that takes the form of the source, in object coordinates",
+)
+FORM_BACK = dict(
+    name="Form Back as a Shape Key", default=False,
+    description="Give the source a shape key for each target that takes its form, in object coordinates",
+)
+SHAPE_KEYS = dict(
+    name="Shape Keys", default=False,
+    description="The source's shape keys as displacements of the target, turned with its surface and as large as it is",
+)
+HEAT = dict(
+    name="Heat Map of the Map", default=False,
+    description="Colour each target by the angle distortion of its map, as the colour attribute Orbifold Map",
+)
+SIGNATURE = dict(
+    name="Orbifold",
+    description="The signature with which all meshes are embedded, with as many numbers as there are landmarks. Empty: "
+    "333 for three landmarks, 2222 for four in the plane, and cones of order 2 in the hyperbolic plane for more",
+)
+NAMES = ("groups", "colours", "attributes", "uv_maps", "form", "form_back", "shape_keys", "heat", "signature")
+
+
+class OrbifoldTransfer(bpy.types.PropertyGroup):
+    """Kept on the scene, and saved with it."""
+
+    groups: BoolProperty(**GROUPS)
+    colours: BoolProperty(**COLOURS)
+    attributes: BoolProperty(**ATTRIBUTES)
+    uv_maps: BoolProperty(**UV_MAPS)
+    form: BoolProperty(**FORM)
+    form_back: BoolProperty(**FORM_BACK)
+    shape_keys: BoolProperty(**SHAPE_KEYS)
+    heat: BoolProperty(**HEAT)
+    signature: StringProperty(**SIGNATURE)
+
+
+CLASSES = (OrbifoldTransfer,)
+
+
+def register() -> None:
+    for cls in CLASSES:
+        bpy.utils.register_class(cls)
+    bpy.types.Scene.orbifold_transfer = PointerProperty(type=OrbifoldTransfer)
+
+
+def unregister() -> None:
+    del bpy.types.Scene.orbifold_transfer
+    for cls in reversed(CLASSES):
+        bpy.utils.unregister_class(cls)
