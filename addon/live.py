@@ -48,7 +48,7 @@ class _Known:
     arrays: blender_mesh.MeshArrays
     edges: np.ndarray  # (edges, 2)
     surface: core.Topology
-    prepared: core.PreparedMesh
+    prepared: Optional[core.PreparedMesh]  # None: it is large, and preparing would be waited for
 
 
 class _State:
@@ -174,7 +174,7 @@ def _read(obj: bpy.types.Object) -> _Known:
         arrays = blender_mesh.read_mesh(mesh)
         known = _Known(
             *(counts, arrays, blender_mesh.read_edges(mesh), core.topology_of(arrays.triangles)),
-            core.prepare(arrays.vertices, arrays.triangles),
+            core.prepare(arrays.vertices, arrays.triangles) if len(arrays.vertices) <= LARGE else None,
         )
         _State.known = {mesh.name_full: known}  # of one mesh only, for it may be large
     return known

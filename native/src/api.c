@@ -149,6 +149,8 @@ static orb_status embed_once(const orb_mesh_arrays *mesh, const orb_request *req
     orb_workshop work = {.request = request, .halve = halve, .monitor = {request->progress, request->user, 0}};
     work.embedding = calloc(1, sizeof *work.embedding);
     orb_status status = work.embedding ? run_stages(&work, mesh, error) : error_memory(error);
+    if (status == ORB_OK)
+        work.embedding->surface->prepared = NULL; /* borrowed for the time of this call */
     free(work.order);
     system_free(work.system);
     problem_free(work.problem);

@@ -17,11 +17,12 @@ typedef struct orb_surface {
     int32_t n_input_vertices, n_input_triangles;
     int32_t *input_triangles; /* [n_input_triangles*3] as given */
     int32_t n_marks;
-    int32_t *vertex, *order;      /* [n_marks] cones and corners as they were picked */
-    bool *mirror;                 /* [n_marks] it is a mirror corner */
+    int32_t *vertex, *order; /* [n_marks] cones and corners as they were picked */
+    bool *mirror;            /* [n_marks] it is a mirror corner */
     orb_cut cut;
-    orb_report about;             /* what the report says of the input */
-    const orb_prepared *prepared; /* the request's, where the mesh has just the edges of the input; else NULL */
+    orb_report about; /* what the report says of the input */
+    const orb_prepared
+        *prepared; /* the request's, while it runs, if the mesh has just the edges of the input; or NULL */
 } orb_surface;
 
 /* `halve` [plain->n_edges] (may be NULL): the chords to halve, at most. A chord is an edge inside that joins two
