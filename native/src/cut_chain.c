@@ -60,14 +60,17 @@ static void list_loops(chain *c) {
         c->taken[v] = c->border[v] || c->marked[v];
 }
 
-/* set[v]: the vertices after this one along the boundary, as far as the next corner or all the way round. */
-static bool mark_after(const chain *c, int32_t vertex, bool *set) {
+/* set[v]: the vertices after this one along the boundary, as far as the next corner or all the way round. The last of
+ * them, or -1. */
+static int32_t mark_after(const chain *c, int32_t vertex, bool *set) {
     const orb_mesh *mesh = c->search.mesh;
-    bool any = false;
+    int32_t last = -1;
     memset(set, 0, (size_t)mesh->n_vertices * sizeof *set);
-    for (int32_t v = next_on_boundary(mesh, vertex); v != vertex && !c->marked[v]; v = next_on_boundary(mesh, v))
-        any = set[v] = true;
-    return any;
+    for (int32_t v = next_on_boundary(mesh, vertex); v != vertex && !c->marked[v]; v = next_on_boundary(mesh, v)) {
+        set[v] = true;
+        last = v;
+    }
+    return last;
 }
 
 /* set[v]: where the path may meet the next mirror: within a side of it, or anywhere on all that have no corners. */
@@ -77,8 +80,11 @@ static void mark_next_mirror(const chain *c, bool *set) {
     while (k < c->marks->n && c->loop[c->marks->vertex[k]] < 0)
         k++;
     const int32_t corner = k < c->marks->n ? c->marks->vertex[k] : -1;
-    if (corner >= 0 && mark_after(c, corner, set))
+    const int32_t last = corner >= 0 ? mark_after(c, corner, set) : -1;
+    if (last >= 0) { /* if there are more, one is left for leaving */
+        set[last] = next_on_boundary(c->search.mesh, corner) == last;
         return;
+    }
     for (int32_t v = 0; v < n; v++)
         set[v] = corner >= 0 ? c->loop[v] == c->loop[corner] : c->loop[v] >= 0;
 }
@@ -164,7 +170,7 @@ static orb_status follow(chain *c, int32_t *base, orb_error *error) {
             break;
         *base = *base < 0 ? ends[0] : *base;
         join_loop(c, ends[1]);
-        if (!mark_after(c, ends[1], c->leave))
+        if (mark_after(c, ends[1], c->leave) < 0)
             c->leave[ends[1]] = true;
         at = -1;
     }
