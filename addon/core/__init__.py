@@ -34,6 +34,7 @@ from .suggest import (
     suggest_cones,
     worth_trying,
 )
+from .surface_map import MapDistortion, SurfaceMap, interpolated, landmark_sequence, surface_map
 from .topology import Topology, topology_of, vertex_components
 from .whole import WholeLayout, edge_keys, whole_layout
 
@@ -43,6 +44,7 @@ __all__ = [
     "Defect",
     "EmbeddingJob",
     "Job",
+    "MapDistortion",
     "MeshFileError",
     "OrbifoldError",
     "Outline",
@@ -55,6 +57,7 @@ __all__ = [
     "Signature",
     "Suggestion",
     "SuggestionJob",
+    "SurfaceMap",
     "Topology",
     "WholeLayout",
     "describe",
@@ -64,6 +67,8 @@ __all__ = [
     "fitting_signatures",
     "format_signature",
     "geometry_of",
+    "interpolated",
+    "landmark_sequence",
     "library",
     "parse_signature",
     "predict",
@@ -74,6 +79,7 @@ __all__ = [
     "start_suggesting",
     "suggest_cones",
     "surface_name",
+    "surface_map",
     "tile_outline",
     "topology_of",
     "vertex_components",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""native/include/orbifold.h and orbifold_cones.h, declared for Python. Nothing else in the add-on uses ctypes.
+"""native/include/orbifold.h, orbifold_cones.h and orbifold_maps.h, declared for Python. Nothing else uses ctypes.
 
 `library()` loads it from this folder at the first call. Names and the sequence of fields are the
 headers'; tests/core/test_binding.py compares them with what a C compiler makes of them."""
@@ -36,6 +36,7 @@ WEIGHTS = {
 }
 WEIGHTS_GIVEN = 3
 HOLES = {"refuse": 0, "fill": 1, "mirror": 2}
+CUTS = {"automatic": 0, "path": 1}
 SYMMETRIES = {"detect": 0, "ignore": 1}
 SYMMETRY_PLANE = 2
 CHARTS = {
@@ -91,6 +92,7 @@ class Request(Structure):
         ("cones", INT32S),
         ("orders", INT32S),
         ("holes", c_int),
+        ("cut", c_int),
         ("polygon", POINTER(Polygon)),
         ("weights", c_int),
         ("clamp", c_double),
@@ -203,6 +205,21 @@ class Suggestion(Structure):
     ]
 
 
+class MapReport(Structure):
+    _fields_ = [("steps", c_int64), ("elements", c_int32), ("in_holes", c_int32), ("landmark_residual", c_double)]
+
+
+class MapDistortion(Structure):
+    _fields_ = [
+        *(
+            (name, c_double)
+            for name in ("quasi_conformal_mean", "quasi_conformal_max", "log_area_mean", "log_area_std")
+        ),
+        ("flipped", c_int64),
+        ("left_out", c_int64),
+    ]
+
+
 EMBEDDING = c_void_p  # orb_embedding *
 SUGGESTIONS = c_void_p  # orb_suggestions *
 JOB = c_void_p  # orb_job *
@@ -237,6 +254,15 @@ PROTOTYPES = {
     "orb_job_finish_suggest": (c_int, [JOB, POINTER(SUGGESTIONS), POINTER(Error)]),
     "orb_job_start_predict": (c_int, [POINTER(MeshArrays), POINTER(Request), POINTER(JOB), POINTER(Error)]),
     "orb_job_finish_predict": (c_int, [JOB, DOUBLES, DOUBLES, POINTER(Error)]),
+    "orb_surface_map": (
+        c_int,
+        [EMBEDDING, EMBEDDING, c_int32, INT32S, DOUBLES, INT32S, DOUBLES, POINTER(MapReport), POINTER(Error)],
+    ),
+    "orb_surface_map_distortion": (
+        c_int,
+        [EMBEDDING, EMBEDDING, DOUBLES, DOUBLES, POINTER(MapDistortion), POINTER(Error)],
+    ),
+    "orb_landmark_sequence": (c_int, [POINTER(MeshArrays), c_int32, INT32S, INT32S, INT32S, POINTER(Error)]),
 }
 
 
@@ -322,6 +348,18 @@ def signature_tile(text: str) -> tuple[np.ndarray, np.ndarray]:
     return points, mirrors
 
 
+def landmark_sequence(
+    vertices: np.ndarray, triangles: np.ndarray, landmarks: np.ndarray, orders: np.ndarray | None
+) -> np.ndarray:
+    """orb_landmark_sequence: numbers of landmarks (k,)."""
+    sequence, record = np.empty(len(landmarks), np.int32), Error()
+    found = library().orb_landmark_sequence(
+        mesh_arrays(vertices, triangles), len(landmarks), int32s(landmarks), int32s(orders), int32s(sequence), record
+    )
+    check(found, record)
+    return sequence
+
+
 def encode_signature(text: str) -> bytes:
     """A signature for C: UTF-8 without a NUL, at which C would stop reading."""
     if not isinstance(text, str):
@@ -363,6 +401,28 @@ class Embedding:
         positions, mended, record = np.empty((n_vertices, 3)), c_int64(), Error()
         check(self._native.orb_whole_sphere(self._pointer, doubles(positions), mended, record), record)
         return positions, mended.value
+
+    def map_points(
+        self, target: Embedding, triangles: np.ndarray | None, barycentric: np.ndarray | None, n_points: int
+    ) -> tuple[np.ndarray, np.ndarray, MapReport]:
+        """orb_surface_map from this mesh: points (p,), (p, 3), or None: its n_points vertices."""
+        found, weights = np.empty(n_points, np.int32), np.empty((n_points, 3))
+        report, record = MapReport(), Error()
+        points = (0 if triangles is None else n_points, int32s(triangles), doubles(barycentric))
+        mapped = self._native.orb_surface_map(
+            *(self._pointer, target._pointer, *points, int32s(found), doubles(weights), report, record)
+        )
+        check(mapped, record)
+        return found, weights, report
+
+    def map_distortion(self, target: Embedding, n_triangles: int) -> tuple[np.ndarray, np.ndarray, MapDistortion]:
+        """orb_surface_map_distortion from this mesh: two arrays (n_triangles,)."""
+        ratio, log_area, measured, record = np.empty(n_triangles), np.empty(n_triangles), MapDistortion(), Error()
+        done = self._native.orb_surface_map_distortion(
+            *(self._pointer, target._pointer, doubles(ratio), doubles(log_area), measured, record)
+        )
+        check(done, record)
+        return ratio, log_area, measured
 
 
 class Prepared:

@@ -45,6 +45,7 @@ def start_embedding(
     holes: str = "refuse",
     polygon: Polygon | None = None,
     prepared: PreparedMesh | None = None,
+    cut: str = "automatic",
 ) -> EmbeddingJob:
     """Starts what `embed` does and returns at once. Arguments are those of `embed`; arrays may change afterwards."""
     points, faces = mesh_of(vertices, triangles) if prepared is None else (None, None)
@@ -54,6 +55,9 @@ def start_embedding(
     if polygon is not None and not isinstance(polygon, Polygon):
         raise OrbifoldError("ORB_BAD_ARGUMENT", "the polygon is no core.Polygon; give one such as Polygon(n=5)")
     treated = holes_of(holes)
+    if cut not in binding.CUTS:
+        raise unknown("way to cut", cut, binding.CUTS)
+    route = binding.CUTS[cut]
     kind, edge_weights = _weights(weights)
     try:
         clamp = float(clamp)
@@ -66,7 +70,7 @@ def start_embedding(
         chart = chart or FIXED_CHARTS.get(polygon.geometry)
     _check_chart(chart, signature, polygon, holes)
     request = binding.request_of(
-        *(signature, picked, orders, treated, native_polygon, edge_weights), weights=kind, clamp=clamp
+        *(signature, picked, orders, treated, native_polygon, edge_weights), weights=kind, clamp=clamp, cut=route
     )
     if prepared is None:
         return EmbeddingJob(binding.EmbeddingJob(binding.mesh_arrays(points, faces), request), len(points), chart)
@@ -87,6 +91,7 @@ def embed(
     holes: str = "refuse",
     polygon: Polygon | None = None,
     prepared: PreparedMesh | None = None,
+    cut: str = "automatic",
 ) -> Result:
     """The certified embedding of a mesh in one piece in an orbifold whose surface it is.
 
@@ -106,10 +111,13 @@ def embed(
     polygon    instead of a signature: the boundary of a disk is fixed to it; `cones` are then the vertices that go
                to its corners in turn (none: spread evenly)
     prepared   what `prepare` made of these vertices and triangles, which then are not read again
+    cut        "path": surfaces without handles and cross-caps are cut through their cones in turn and from mirror to
+               mirror, however long that is, as surface maps need it; "automatic": a graph where that may be better
 
     Raises OrbifoldError. A cancelled computation raises ORB_CANCELLED, or what `progress` raised, at once.
     """
-    job = start_embedding(vertices, triangles, signature, cones, orders, weights, clamp, chart, holes, polygon, prepared)
+    settings = (weights, clamp, chart, holes, polygon, prepared, cut)
+    job = start_embedding(vertices, triangles, signature, cones, orders, *settings)
     return wait_for(job, progress)
 
 

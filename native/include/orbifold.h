@@ -54,7 +54,9 @@ typedef enum orb_status {
     ORB_CUT_BLOCKED,              /* no path joins two cones, within bounds; elements: the two vertices */
     ORB_NOT_CONVERGED,            /* elements: vertices, where any stand out */
     ORB_CERTIFICATE_FAILED,       /* elements: flipped triangles, or the vertices whose angles are wrong */
-    ORB_LINEAR_SOLVER             /* CHOLMOD reported a fault that is none of the above */
+    ORB_LINEAR_SOLVER,            /* CHOLMOD reported a fault that is none of the above */
+    ORB_NO_CORRESPONDENCE,        /* two embeddings whose tiles or cones do not match; elements: the source's cones */
+    ORB_POINT_NOT_FOUND           /* the target has no triangle at a point; elements: the source's vertices, or none */
 } orb_status;
 
 ORB_API const char *orb_status_name(orb_status status); /* "ORB_OK", "ORB_OUT_OF_MEMORY", ...; never NULL */
@@ -98,6 +100,14 @@ typedef enum orb_holes {
     ORB_HOLES_MIRROR      /* add a * to the signature for each */
 } orb_holes;
 
+/* Which sides the tile gets. Two embeddings have a surface map (orbifold_maps.h) where their cuts correspond. */
+typedef enum orb_cut {
+    ORB_CUT_AUTOMATIC = 0, /* a path, or where that is long and the tile may be another polygon, a graph */
+    ORB_CUT_PATH           /* surfaces without handles and cross-caps: through the cones in turn, however long that is,
+                              from the mirror whose corner was picked first, and on to the other mirrors; the same word
+                              for every mesh. Other surfaces have graphs as ever */
+} orb_cut;
+
 /* Instead of an orbifold: the boundary of a disk goes to a convex polygon, by arc length, and stays there (Tutte 1963;
  * Floater 2003; theorem 1 of 2016 and 2017). */
 typedef struct orb_polygon {
@@ -124,6 +134,7 @@ typedef struct orb_request {
                               runs through its cones in turn; corners may start anywhere and run either way round */
     const int32_t *orders; /* [n_cones] order of each, a permutation of the signature's; NULL: as it stands */
     orb_holes holes;
+    orb_cut cut;
     const orb_polygon *polygon; /* not NULL: a fixed boundary, and no signature */
     orb_weights weights;
     double clamp;                 /* least cotangent weight, > 0 */

@@ -56,19 +56,34 @@ static orb_status refuse_edge_between_poles(const orb_workshop *work, orb_error 
     return ORB_OK;
 }
 
+static orb_status list_corners(orb_workshop *work, orb_error *error) {
+    const orb_disk *disk = work->disk;
+    int32_t *corners = work->embedding->corners = malloc(((size_t)disk->word->n_sides + 1) * sizeof *corners);
+    if (!corners)
+        return error_memory(error);
+    for (int32_t s = 0; s < disk->word->n_sides; s++) {
+        const int32_t vertex = disk->copy_vertex[disk->boundary[disk->corner_at[s]]];
+        corners[s] = vertex < work->embedding->mesh->n_vertices ? vertex : -1;
+    }
+    return ORB_OK;
+}
+
 static orb_status cut_and_glue(orb_workshop *work, orb_error *error) {
     orb_embedding *embedding = work->embedding;
     orb_report *report = &embedding->report;
     const orb_signature *signature = embedding->surface->signature;
     double start = monitor_clock();
     orb_marks marks = surface_marks(embedding->surface);
-    orb_status status = cut_open(embedding->mesh, signature, embedding->surface->parent, &marks, &work->disk, error);
+    orb_status status = cut_open(embedding->mesh, signature, embedding->surface->cut, embedding->surface->parent,
+                                 &marks, &work->disk, error);
     report->seconds_cut = monitor_clock() - start;
     if (status != ORB_OK)
         return status;
     start = monitor_clock();
     status = signature ? tile_create(work->disk->word, signature->curvature, &embedding->tile, error)
                        : polygon_create(work->request->polygon, &embedding->tile, error);
+    if (status == ORB_OK)
+        status = list_corners(work, error);
     if (status == ORB_OK)
         status = refuse_edge_between_poles(work, error);
     if (status == ORB_OK)

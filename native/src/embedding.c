@@ -8,6 +8,7 @@ void orb_embedding_free(orb_embedding *embedding) {
         return;
     surface_free(embedding->surface);
     tile_free(embedding->tile);
+    free(embedding->corners);
     holonomy_free(embedding->copies);
     free(embedding->position);
     free(embedding->placed);

@@ -10,6 +10,7 @@ struct orb_embedding {
     orb_surface *surface;
     orb_mesh *mesh; /* the surface's */
     orb_tile *tile; /* after the affine modulus, where there is one */
+    int32_t *corners; /* [tile->word->n_sides] the vertex at each corner of the tile; one of a refinement: -1 */
     orb_copies *copies;
     orb_point *position;                   /* [mesh->n_vertices] isolated vertices: the origin */
     orb_point *placed;                     /* [copies->n_copies] position of each copy */

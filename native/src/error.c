@@ -36,6 +36,8 @@ const char *orb_status_name(orb_status status) {
         NAME(ORB_NOT_CONVERGED);
         NAME(ORB_CERTIFICATE_FAILED);
         NAME(ORB_LINEAR_SOLVER);
+        NAME(ORB_NO_CORRESPONDENCE);
+        NAME(ORB_POINT_NOT_FOUND);
     }
 #undef NAME
     return "ORB_UNKNOWN_STATUS";

@@ -123,6 +123,69 @@ double geometry_triangle_area(const orb_geometry *geometry, double complex s, do
     return 2 * atan2(cimag(c), 1 + geometry->K * creal(c)); /* the angle excess, or defect, halved: arg(1 + K c) / K */
 }
 
+/* With t = toward(p, corner) = D / d the weights are (1 + K |t_j|^2) Im(conj(t_k) t_l), up to one factor. As
+ * |d|^2 + K |D|^2 = (1 + K |p|^2) (1 + K |corner|^2), nothing is divided by a d that may vanish, and nothing cancels.
+ * */
+void geometry_locate(const orb_geometry *geometry, orb_point p, const orb_point corners[3], double weight[3],
+                     double sine[3]) {
+    double complex toward[3]; /* D conj(d), that is t |d|^2 */
+    double factor = conformal_factor(geometry, p), size[3], total = 0, largest = 0;
+    for (int k = 0; k < 3; k++) {
+        double complex difference = (corners[k].z - p.z) + (corners[k].low - p.low);
+        double complex d = factor + geometry->K * conj(p.z) * difference;
+        double scale = modulus(difference), of_d = modulus(d), over = scale > of_d ? scale : of_d;
+        toward[k] = difference / over * conj(d / over);
+        size[k] = scale / over * (of_d / over);
+        weight[k] = conformal_factor(geometry, corners[k]) / (over * over);
+    }
+    for (int k = 0; k < 3; k++) {
+        int next = (k + 1) % 3, last = (k + 2) % 3;
+        double cross = cimag(conj(toward[next]) * toward[last]), both = size[next] * size[last];
+        sine[k] = both == 0 ? 0 : cross / both; /* what is no number stays none */
+        weight[k] *= cross;
+        total += weight[k];
+        largest = fmax(largest, fabs(weight[k]));
+    }
+    for (int k = 0; k < 3; k++)
+        weight[k] = largest > 0 ? weight[k] / (fabs(total) > 0 ? total : largest) : 0;
+}
+
+/* cos_K of the distance */
+static double cosine(const orb_geometry *geometry, orb_point p, orb_point q) {
+    double r = modulus(geometry_toward(geometry, p, q)), bend = geometry->K * r * r;
+    return (1 - bend) / (1 + bend);
+}
+
+orb_point geometry_between(const orb_geometry *geometry, const orb_point corners[3], const double weight[3]) {
+    int base = weight[1] > weight[0] ? 1 : 0;
+    base = weight[2] > weight[base] ? 2 : base;
+    double complex w = 0;
+    double height = 0, square = 0; /* the sum's last coordinate with the base at the origin; <sum, sum> / K */
+    for (int k = 0; k < 3; k++) {
+        int next = (k + 1) % 3;
+        double complex t = geometry_toward(geometry, corners[base], corners[k]);
+        double r = modulus(t), bend = geometry->K * r * r;
+        w += weight[k] * 2 / (1 + bend) * t;
+        height += weight[k] * (1 - bend) / (1 + bend);
+        square += weight[k] * (weight[k] + 2 * weight[next] * cosine(geometry, corners[k], corners[next]));
+    }
+    orb_isometry home = isometry_to_origin(geometry, corners[base]);
+    return isometry_apply(geometry, isometry_inverse(home), point_of(w / (height + sqrt(square))));
+}
+
+void geometry_slopes(const orb_geometry *geometry, orb_point p, const orb_point corners[3], const double weight[3],
+                     double complex slope[3]) {
+    double height = 0;
+    for (int k = 0; k < 3; k++) {
+        double complex t = geometry_toward(geometry, p, corners[k]);
+        double r = modulus(t), bend = geometry->K * r * r;
+        slope[k] = 2 / (1 + bend) * t;
+        height += weight[k] * (1 - bend) / (1 + bend);
+    }
+    for (int k = 0; k < 3; k++)
+        slope[k] /= height;
+}
+
 void geometry_coordinates(const orb_geometry *geometry, orb_point p, double value[3], double low[3]) {
     ddc z = wide(p);
     dd factor = conformal(geometry, p);

@@ -83,6 +83,20 @@ orb_edge_terms geometry_edge(const orb_geometry *geometry, orb_point p, orb_poin
 /* Signed area of the geodesic triangle 0, s, t, where s and t are `toward` vectors from its first corner. */
 double geometry_triangle_area(const orb_geometry *geometry, double complex s, double complex t);
 
+/* --- geodesic triangles, in whose interior a point is the sum of weights times the corners' model coordinates, made a
+ * point again. Isometries act linearly on these, so the weights are the same in all images, and on both sides of an
+ * edge. --- */
+
+/* Of p: weight[3] that add up to 1, and sine[3] of the angle at which p sees the edge that faces each corner: negative
+ * where p is beyond it. Of points far away, as opposite ones on the sphere, only the signs count. */
+void geometry_locate(const orb_geometry *geometry, orb_point p, const orb_point corners[3], double weight[3],
+                     double sine[3]);
+/* And back. */
+orb_point geometry_between(const orb_geometry *geometry, const orb_point corners[3], const double weight[3]);
+/* How p, which has these weights, moves with each of them, in the frame at p. */
+void geometry_slopes(const orb_geometry *geometry, orb_point p, const orb_point corners[3], const double weight[3],
+                     double complex slope[3]);
+
 /* The three coordinates of docs/mathematics.md, section 1: (2x, 2y, 1 - K|z|^2) / (1 + K|z|^2), as value + low. */
 void geometry_coordinates(const orb_geometry *geometry, orb_point p, double value[3], double low[3]);
 

@@ -180,6 +180,9 @@ static orb_status read_request(orb_surface *surface, const orb_request *request,
     if (request->holes < ORB_HOLES_REFUSE || request->holes > ORB_HOLES_MIRROR)
         return error_set(error, ORB_BAD_ARGUMENT, "what to do with holes is %d: choose refuse, fill or mirror",
                          (int)request->holes);
+    if (request->cut < ORB_CUT_AUTOMATIC || request->cut > ORB_CUT_PATH)
+        return error_set(error, ORB_BAD_ARGUMENT, "the cut is %d: choose automatic or path", (int)request->cut);
+    surface->cut = request->cut;
     orb_status status = request->polygon ? ORB_OK : signature_parse(request->signature, &surface->signature, error);
     if (status == ORB_OK && surface->signature && !signature_is_supported(surface->signature))
         status = signature_refuse(surface->signature, error);

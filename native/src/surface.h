@@ -19,7 +19,8 @@ typedef struct orb_surface {
     int32_t n_marks;
     int32_t *vertex, *order; /* [n_marks] cones and corners as they were picked */
     bool *mirror;            /* [n_marks] it is a mirror corner */
-    orb_report about;        /* what the report says of the input */
+    orb_cut cut;
+    orb_report about; /* what the report says of the input */
     const orb_prepared
         *prepared; /* the request's, while it runs, if the mesh has just the edges of the input; or NULL */
 } orb_surface;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""binding.py says what the two headers say: a C compiler and the linker are asked."""
+"""binding.py says what the three headers say: a C compiler and the linker are asked."""
 
 import re
 import shutil
@@ -12,9 +12,9 @@ import core
 from core import binding
 
 HEADER = CHECKOUT / "native" / "include" / "orbifold.h"
-CONES_HEADER = HEADER.with_name("orbifold_cones.h")  # includes the other one
+CONES_HEADER, MAPS_HEADER = HEADER.with_name("orbifold_cones.h"), HEADER.with_name("orbifold_maps.h")  # these include it
 HEADERS = "".join(
-    re.sub(r"/\*.*?\*/", "", path.read_text(), flags=re.DOTALL) for path in (HEADER, CONES_HEADER)
+    re.sub(r"/\*.*?\*/", "", path.read_text(), flags=re.DOTALL) for path in (HEADER, CONES_HEADER, MAPS_HEADER)
 )  # without comments
 STRUCTURES = {
     "orb_error": binding.Error,
@@ -26,6 +26,8 @@ STRUCTURES = {
     "orb_polygon": binding.Polygon,
     "orb_suggest_request": binding.SuggestRequest,
     "orb_suggestion": binding.Suggestion,
+    "orb_map_report": binding.MapReport,
+    "orb_map_distortion": binding.MapDistortion,
 }
 CONSTANTS = {
     "ORB_OK": binding.OK,
@@ -41,6 +43,7 @@ CONSTANTS = {
     "ORB_WEIGHTS_GIVEN": binding.WEIGHTS_GIVEN,
     "ORB_SYMMETRY_PLANE": binding.SYMMETRY_PLANE,
     **{f"ORB_SYMMETRY_{name.upper()}": number for name, number in binding.SYMMETRIES.items()},
+    **{f"ORB_CUT_{name.upper()}": number for name, number in binding.CUTS.items()},
     **{f"ORB_HOLES_{name.upper()}": number for name, number in binding.HOLES.items()},
     **{f"ORB_CHART_{name.upper()}": number for name, number in binding.CHARTS.items()},
 }
@@ -54,7 +57,8 @@ def ask_compiler(folder, expressions):
     lines = "\n".join(f'printf("%ld\\n", (long)({expression}));' for expression in expressions)
     source = folder / "ask.c"
     source.write_text(
-        f'#include <stddef.h>\n#include <stdio.h>\n#include "{CONES_HEADER}"\nint main(void) {{\n{lines}\nreturn 0; }}\n'
+        f'#include <stddef.h>\n#include <stdio.h>\n#include "{CONES_HEADER}"\n#include "{MAPS_HEADER}"\n'
+        f"int main(void) {{\n{lines}\nreturn 0; }}\n"
     )
     subprocess.run([compiler, "-std=c11", "-o", folder / "ask", source], check=True)
     return [int(line) for line in subprocess.check_output([folder / "ask"], text=True).split()]

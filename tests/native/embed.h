@@ -38,7 +38,8 @@ static inline orb_status problem_of(orb_embedding *embedding, orb_problem **prob
     orb_disk *disk = NULL;
     orb_marks marks = surface_marks(embedding->surface);
     orb_status status =
-        cut_open(embedding->mesh, embedding->surface->signature, embedding->surface->parent, &marks, &disk, error);
+        cut_open(embedding->mesh, embedding->surface->signature, embedding->surface->cut, embedding->surface->parent,
+                 &marks, &disk, error);
     if (status == ORB_OK)
         status = problem_create(embedding->mesh, embedding->copies, disk, embedding->tile, embedding->weights, problem,
                                 error);

@@ -149,6 +149,49 @@ static void areas(const orb_geometry *geometry, random_state *state) {
 }
 TEST(area_is_the_angle_excess) { each_geometry(areas); }
 
+/* Weights of a point, the point of these weights, and how it moves with them. */
+static void weights(const orb_geometry *geometry, random_state *state) {
+    orb_point corner[3], p;
+    double given[3], sum = 0, found[3], sine[3], model[3] = {0}, value[3], low[3];
+    for (int k = 0; k < 3; k++) {
+        corner[k] = point_of(random_in_disk(state, 0.6));
+        sum += given[k] = 0.01 + random_unit(state);
+    }
+    double complex s = geometry_toward(geometry, corner[0], corner[1]);
+    double complex t = geometry_toward(geometry, corner[0], corner[2]);
+    if (cimag(conj(s) * t) < 0.05 * cabs(s) * cabs(t))
+        return; /* clockwise, or a sliver */
+    for (int k = 0; k < 3; k++) {
+        given[k] /= sum;
+        geometry_coordinates(geometry, corner[k], value, low);
+        for (int i = 0; i < 3; i++)
+            model[i] += given[k] * value[i];
+    }
+    p = geometry_between(geometry, corner, given);
+    geometry_coordinates(geometry, p, value, low);
+    CHECK_NEAR(model[0] * value[2] - model[2] * value[0], 0, 1e-12);
+    CHECK_NEAR(model[1] * value[2] - model[2] * value[1], 0, 1e-12);
+    const orb_isometry h = random_isometry(geometry, state);
+    for (int k = 0; k < 3; k++)
+        corner[k] = isometry_apply(geometry, h, corner[k]);
+    p = isometry_apply(geometry, h, p);
+    geometry_locate(geometry, p, corner, found, sine);
+    for (int k = 0; k < 3; k++) {
+        CHECK_NEAR(found[k], given[k], 1e-11);
+        CHECK(sine[k] > 0);
+    }
+    const double step = 1e-6, moved[3] = {given[0] - step, given[1] + step, given[2]};
+    double complex slope[3], by = geometry_log(geometry, p, geometry_between(geometry, corner, moved));
+    geometry_slopes(geometry, p, corner, given, slope);
+    CHECK_NEAR(cabs(by / step - (slope[1] - slope[0])), 0, 1e-3);
+    orb_point beyond = geometry_exp(geometry, p, 1.5 * geometry_log(geometry, p, corner[0]));
+    geometry_locate(geometry, beyond, corner, found, sine);
+    CHECK(sine[1] < 0 || sine[2] < 0);
+    geometry_locate(geometry, corner[1], corner, found, sine);
+    CHECK(found[0] == 0 && found[1] == 1 && found[2] == 0);
+}
+TEST(weights_in_triangles) { each_geometry(weights); }
+
 static void convex_chart(const orb_geometry *geometry, random_state *state) {
     orb_point p = point_of(random_in_disk(state, 0.9));
     orb_point back = geometry_from_convex_chart(geometry, geometry_convex_chart(geometry, p));

@@ -8,6 +8,7 @@
 #include "check.h"
 #include "failing.h"
 #include "orbifold_cones.h"
+#include "orbifold_maps.h"
 #include "surfaces.h"
 
 /* Embeds, reads the UVs and, on the sphere, the whole sphere. */
@@ -44,6 +45,30 @@ static orb_status prepares(const sample_mesh *mesh, const void *request, double 
     if (status == ORB_OK)
         status = use_everything(mesh, &with, room);
     orb_prepared_free(prepared);
+    return status;
+}
+
+/* Embeds twice and maps from one to the other. */
+static orb_status maps(const sample_mesh *mesh, const void *request, double *room) {
+    orb_mesh_arrays arrays = sample_arrays(mesh);
+    orb_embedding *a = NULL, *b = NULL;
+    orb_map_distortion distortion;
+    orb_error error;
+    const orb_request *asked = request;
+    int32_t *triangles = (int32_t *)(room + 3 * (size_t)mesh->n_vertices), sequence[8];
+    orb_request other = *asked;
+    other.weights = ORB_WEIGHTS_UNIFORM;
+    orb_status status = orb_embed(&arrays, asked, &a, &error);
+    if (status == ORB_OK)
+        status = orb_embed(&arrays, &other, &b, &error);
+    if (status == ORB_OK)
+        status = orb_surface_map(a, b, 0, NULL, NULL, triangles, room, NULL, &error);
+    if (status == ORB_OK)
+        status = orb_surface_map_distortion(a, b, NULL, NULL, &distortion, &error);
+    if (status == ORB_OK)
+        status = orb_landmark_sequence(&arrays, asked->n_cones, asked->cones, NULL, sequence, &error);
+    orb_embedding_free(a);
+    orb_embedding_free(b);
     return status;
 }
 
@@ -131,6 +156,23 @@ TEST(out_of_memory_with_a_hole) {
     orb_request request = asking("432", 3, (int32_t[]){0, 14, 30});
     request.holes = ORB_HOLES_FILL;
     fail_each_of(open, request);
+}
+
+TEST(out_of_memory_while_mapping) {
+    orb_request request = asking("22222", 5, (int32_t[]){0, 6, 1, 7, 2});
+    request.cut = ORB_CUT_PATH;
+    fail_each_in(maps, sample_cube(), &request, 1);
+    request = asking("22222", 5, (int32_t[]){0, 3, 14, 30, 35});
+    request.cut = ORB_CUT_PATH;
+    fail_each_in(maps, sample_icosphere(1), &request, 1);
+    request = asking("4*2", 2, (int32_t[]){9, 0});
+    request.cut = ORB_CUT_PATH;
+    fail_each_in(maps, sample_rectangle(1, 1.3, 3, 3), &request, 1);
+    request = asking("2**", 1, (int32_t[]){4});
+    request.cut = ORB_CUT_PATH;
+    fail_each_in(maps, sample_band(7, false), &request, 1);
+    request = asking("o", 0, NULL);
+    fail_each_in(maps, sample_torus(5, 4, 3, 1), &request, 1);
 }
 
 static sample_mesh sum_of(sample_mesh a, sample_mesh b) {
