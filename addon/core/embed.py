@@ -111,9 +111,8 @@ def embed(
     polygon    instead of a signature: the boundary of a disk is fixed to it; `cones` are then the vertices that go
                to its corners in turn (none: spread evenly)
     prepared   what `prepare` made of these vertices and triangles, which then are not read again
-    cut        "path": a sphere or disk with cones is cut through these in turn, however long that is (disks from the
-               side after their first corner), as surface maps need it; "automatic": along a graph where that may be
-               better
+    cut        "path": surfaces without handles and cross-caps are cut through their cones in turn and from mirror to
+               mirror, however long that is, as surface maps need it; "automatic": a graph where that may be better
 
     Raises OrbifoldError. A cancelled computation raises ORB_CANCELLED, or what `progress` raised, at once.
     """

@@ -103,8 +103,9 @@ typedef enum orb_holes {
 /* Which sides the tile gets. Two embeddings have a surface map (orbifold_maps.h) where their cuts correspond. */
 typedef enum orb_cut {
     ORB_CUT_AUTOMATIC = 0, /* a path, or where that is long and the tile may be another polygon, a graph */
-    ORB_CUT_PATH           /* spheres and disks with cones: through the cones in turn, however long that is, on disks
-                              from the side after the first corner that was picked; other surfaces have graphs */
+    ORB_CUT_PATH           /* surfaces without handles and cross-caps: through the cones in turn, however long that is,
+                              from the mirror whose corner was picked first, and on to the other mirrors; the same word
+                              for every mesh. Other surfaces have graphs as ever */
 } orb_cut;
 
 /* Instead of an orbifold: the boundary of a disk goes to a convex polygon, by arc length, and stays there (Tutte 1963;

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cut_chain.h"
 #include "cut_graph.h"
 #include "refine.h"
 #include "shortest.h"
@@ -269,12 +270,12 @@ orb_status cut_surface(orb_mesh *mesh, const int32_t *parent, const orb_marks *m
     return status;
 }
 
-/* A disk with cones along a path from its boundary. */
-static orb_status cut_disk(const orb_mesh *mesh, const int32_t *parent, const orb_marks *marks, orb_disk **disk,
-                           orb_error *error) {
+/* A surface with borders along a path through cones and mirrors in turn. */
+static orb_status cut_borders(const orb_mesh *mesh, const int32_t *parent, const orb_marks *marks, orb_disk **disk,
+                              orb_error *error) {
     int32_t start = -1;
     uint8_t *cut = malloc((size_t)mesh->n_edges + 1);
-    orb_status status = cut ? cut_graph_path(mesh, parent, marks, cut, &start, error) : error_memory(error);
+    orb_status status = cut ? cut_chain_find(mesh, parent, marks, cut, &start, error) : error_memory(error);
     if (status == ORB_OK)
         status = disk_create(mesh, cut, start, marks, disk, error);
     free(cut);
@@ -312,8 +313,8 @@ orb_status cut_open(orb_mesh *mesh, const orb_signature *signature, orb_cut cut,
     *disk = NULL;
     bool planar = signature && !signature->n_crosscaps && !signature->n_handles;
     bool sphere = planar && signature->n_mirrors == 0;
-    if (planar && signature->n_mirrors == 1 && signature->n_cones > 0 && cut == ORB_CUT_PATH)
-        return cut_disk(mesh, parent, marks, disk, error);
+    if (planar && cut == ORB_CUT_PATH && signature->n_mirrors > (signature->n_cones == 0))
+        return cut_borders(mesh, parent, marks, disk, error);
     if (!sphere)
         return cut_surface(mesh, parent, marks, signature ? -1 : 0, disk, error);
     if (signature->curvature < 0 && marks->n > 3 && cut == ORB_CUT_AUTOMATIC)

@@ -22,8 +22,9 @@ orb_status cut_surface(orb_mesh *mesh, const int32_t *parent, const orb_marks *m
 
 /* The cut that a signature's orbifold gets; NULL: a polygon's disk, whose first mark becomes corner 0. A sphere with
  * cones is cut along the path in which they were picked, every other surface along a graph; and as a tile of the
- * hyperbolic plane may be any polygon with the right angles, a sphere with many cones there, too
- * (docs/decisions.md), unless `cut` asks for the path. `parent`: as in cut_surface. */
+ * hyperbolic plane may be any polygon with the right angles, a sphere with many cones there, too (docs/decisions.md).
+ * Where `cut` asks for a path there is no graph but with handles or cross-caps (cut_chain.h). `parent`: as in
+ * cut_surface. */
 orb_status cut_open(orb_mesh *mesh, const orb_signature *signature, orb_cut cut, const int32_t *parent,
                     const orb_marks *marks, orb_disk **disk, orb_error *error);
 

@@ -2,22 +2,16 @@
 #ifndef ORB_CUT_GRAPH_H
 #define ORB_CUT_GRAPH_H
 
-#include "disk.h"
+#include "mesh.h"
 
 /* cut[n_edges] (overwritten): 1 on the boundary and on the edges of a graph that reaches all cones and whose
  * complement is an open disk; no vertex but a cone is a loose end of it. Tree and cotree (Eppstein 2003) with the
  * greedy loops of Erickson and Whittlesey 2005: arcs are shortest by edge length from the boundary, and on a closed
- * surface from a point, through which the loops are shortest, too: the first of one or two cones, else of a dozen
- * points all over the surface the one with the shortest graph. Works on any surface in one piece, orientable or not.
- * `parent` [n_triangles] (may be NULL): no edge between two triangles with the same parent is cut. O(n log n). */
+ * surface from a point, through which the loops are shortest, too: the first of one or two cones, else of a dozen points
+ * all over the surface the one with the shortest graph.
+ * Works on any surface in one piece, orientable or not. `parent` [n_triangles] (may be NULL): no edge between two
+ * triangles with the same parent is cut. O(n log n). */
 orb_status cut_graph_find(const orb_mesh *mesh, const int32_t *parent, int32_t n_cones, const int32_t *cones,
                           uint8_t *cut, orb_error *error);
-
-/* The same for an oriented disk cut along one path through the marks inside in turn. It starts within the side that
- * follows the first mark on the boundary, where that is nearest; if there is none, or no vertex in it, anywhere on the
- * boundary. *start: the half-edge along the boundary that leaves the path's first vertex. Paths avoid one another, the
- * boundary and marks; ORB_CUT_BLOCKED names two marks that none joins. O(k n log n). */
-orb_status cut_graph_path(const orb_mesh *mesh, const int32_t *parent, const orb_marks *marks, uint8_t *cut,
-                          int32_t *start, orb_error *error);
 
 #endif

@@ -198,28 +198,30 @@ static orb_status check_features(const orb_embedding *source, const orb_embeddin
     return ORB_OK;
 }
 
-static orb_status refuse_words(const orb_embedding *source, bool tiles_differ, orb_error *error) {
+static orb_status refuse_words(const orb_embedding *source, const orb_embedding *target, bool tiles_differ,
+                               orb_error *error) {
     const orb_signature *s = source->surface->signature;
     if (!s)
         return error_set(error, ORB_NO_CORRESPONDENCE, "the two meshes are on different polygons: embed both on one");
     if (tiles_differ)
         return error_set(error, ORB_NO_CORRESPONDENCE, "the two tiles of %s have different shapes", s->text);
-    if (s->n_mirrors + s->n_crosscaps + s->n_handles == 0)
+    if (s->n_crosscaps + s->n_handles > 0)
         return error_set(
             error, ORB_NO_CORRESPONDENCE,
-            "the two meshes are cut open differently, at least one of them along a graph instead of the path "
-            "through its cones in turn: embed both with the cut 'path'");
-    if (s->n_corners > 0 && s->n_cones == 0 && s->n_mirrors == 1 && s->n_crosscaps + s->n_handles == 0)
-        return error_set(
-            error, ORB_NO_CORRESPONDENCE,
-            "the corners follow one another round one mesh as they do not round the other: give them in one "
-            "sequence, counter-clockwise as seen from outside on both or on neither");
+            "the two meshes of %s are cut open along graphs that do not correspond, since shortest paths "
+            "decide how they run: place cones and corners more alike, or choose an orbifold without handles "
+            "and cross-caps",
+            s->text);
+    if ((source->surface->cut != ORB_CUT_PATH || target->surface->cut != ORB_CUT_PATH) &&
+        (s->n_cones > 0 || s->n_mirrors > 1))
+        return error_set(error, ORB_NO_CORRESPONDENCE,
+                         "the two meshes are cut open differently, at least one of them along a graph instead of the "
+                         "path through its cones in turn: embed both with the cut 'path'");
     return error_set(
         error, ORB_NO_CORRESPONDENCE,
-        "the two meshes of %s are cut open along graphs that do not correspond, since shortest paths decide "
-        "how they run: place cones and corners more alike, or choose an orbifold without handles and "
-        "cross-caps",
-        s->text);
+        "the corners follow one another round one mesh as they do not round the other, or have no vertex "
+        "between them on one: give them in one sequence, counter-clockwise as seen from outside on both or "
+        "on neither");
 }
 
 orb_status tile_map_find(const orb_embedding *source, const orb_embedding *target, orb_tile_map *map,
@@ -231,7 +233,7 @@ orb_status tile_map_find(const orb_embedding *source, const orb_embedding *targe
     if (is_torus(source))
         return fit_tori(source->tile, target->tile, map, error);
     if (a->n_sides != b->n_sides || a->n_nodes != b->n_nodes)
-        return refuse_words(source, false, error);
+        return refuse_words(source, target, false, error);
     const int32_t n = a->n_sides;
     letter *from = malloc((2 * (size_t)n + 1) * sizeof *from), *to = from + n;
     if (!from)
@@ -242,6 +244,6 @@ orb_status tile_map_find(const orb_embedding *source, const orb_embedding *targe
     const bool same = compare_from(n, from, start, to, end) == 0;
     free(from);
     if (!same || !fit(source->tile, target->tile, (end - start + n) % n, map))
-        return refuse_words(source, same, error);
+        return refuse_words(source, target, same, error);
     return ORB_OK;
 }

@@ -13,8 +13,8 @@ from surfaces import picks_for
 import core
 
 MIDDLE = np.full((1, 3), 1 / 3)
-# Spheres, disks and tori are cut alike on every mesh.
-ALIKE = [name for name in [*SPHERICAL, *EUCLIDEAN, *HYPERBOLIC] if features(name).topology in ((0, 0, 0), (0, 0, 1))]
+# Surfaces without handles and cross-caps, and tori, are cut alike on every mesh.
+ALIKE = [name for name in [*SPHERICAL, *EUCLIDEAN, *HYPERBOLIC] if features(name).topology[:2] == (0, 0)]
 ALIKE.append("o")
 
 

@@ -168,6 +168,9 @@ TEST(out_of_memory_while_mapping) {
     request = asking("4*2", 2, (int32_t[]){9, 0});
     request.cut = ORB_CUT_PATH;
     fail_each_in(maps, sample_rectangle(1, 1.3, 3, 3), &request, 1);
+    request = asking("2**", 1, (int32_t[]){4});
+    request.cut = ORB_CUT_PATH;
+    fail_each_in(maps, sample_band(7, false), &request, 1);
     request = asking("o", 0, NULL);
     fail_each_in(maps, sample_torus(5, 4, 3, 1), &request, 1);
 }
