@@ -13,7 +13,9 @@ bl_info = {
 
 import bpy
 
-from . import cli, handlers, live, operators, panels, preferences, previews, properties, surface, transfer_settings, viewing
+from . import (
+    cli, handlers, live, operators, panels, preferences, previews, properties, surface, transfer_settings, viewing,
+)
 from .api import OrbifoldError, check, sphere, suggest, transfer, unwrap
 from .panels import menus
 

@@ -160,7 +160,8 @@ def transfer(
     """What the source's mesh has -> the targets' meshes, by maps that are one to one and take landmarks to landmarks.
     The report: `source`, `signature`, `geometry`, and `targets`, for each `object`, `written` (names, by kind),
     `crossing_faces` (that a seam of the source's UV maps runs through), `locked_groups`, `distortion`, `flipped`,
-    `landmark_residual`, `bijective`. Where one target fails nothing is written to any.
+    `landmark_residual`, `bijective`, and `cut_ratio`: how many times as long as its own the source's landmark paths
+    become. Where one target fails nothing is written to any.
 
     landmarks   for the source and each target as many vertices, those that correspond in the same places (core has
                 landmark_sequence for a good sequence); None: the cones of the meshes

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 INSIDE = 1e-6  # how far within its face a corner is looked up, in barycentric coordinates
 SAMPLES = 32  # points on each edge of a seam, at least
 MOST_SAMPLES = 512
+CUT_SAMPLES = 9  # points on each edge of the cut
 TORN = 1e-6  # difference of two UVs from which on an edge is a seam
 ASTRAY = 0.75  # from where the affine map of a face's middle has a corner, in the face's size: it is beyond a seam
 
@@ -103,6 +104,24 @@ class Correspondence:
         found[~self.vertices.there] = np.nan
         return found
 
+    @cached_property
+    def cut_ratio(self) -> float:
+        """How long the source's cut is once it is mapped to the target, for the length of the target's own cut."""
+        source, target = self.back.source, self.back.target
+        seams = source.seams[(source.seams < source.n_input_vertices).all(1)]
+        ends = _sides(self.source.triangles)
+        n = int(self.source.triangles.max(initial=0)) + 1
+        keys = ends.min(1) * n + ends.max(1)
+        order = np.argsort(keys, kind="stable")
+        corner = order[np.searchsorted(keys[order], seams.min(1).astype(np.int64) * n + seams.max(1))]
+        steps = np.linspace(0, 1, CUT_SAMPLES)
+        at, where = self.back.evaluate(*_along(np.repeat(corner, CUT_SAMPLES), np.tile(steps, len(corner))))
+        points = Spots(at, where).mixed(self.target.vertices[self.target.triangles])
+        points[at < 0] = np.nan
+        lengths = np.linalg.norm(np.diff(points.reshape(len(corner), CUT_SAMPLES, 3), axis=1), axis=2)
+        own = np.linalg.norm(np.diff(target.vertices[target.seams], axis=1), axis=2).sum()
+        return float(np.nansum(lengths) / own) if own > 0 else 1.0
+
     # ------------------------------------------------------------------------------------------------- UV maps
 
     def of_uv(self, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -150,11 +169,8 @@ class Correspondence:
         """The target's faces in whose inside there are points of these edges (k,), by corner of the source's."""
         finer = np.sqrt(len(self.target.triangles) / max(len(self.source.triangles), 1))
         samples = int(np.clip(SAMPLES * finer, SAMPLES, MOST_SAMPLES))
-        along = np.tile((np.arange(samples) + 0.5) / samples, len(torn))
-        triangle, corner = np.repeat(torn // 3, samples), np.repeat(torn % 3, samples)
-        weights, rows = np.zeros((len(along), 3)), np.arange(len(along))
-        weights[rows, corner], weights[rows, (corner + 1) % 3] = 1 - along, along
-        at, where = self.back.evaluate(triangle, weights)
+        steps = np.tile((np.arange(samples) + 0.5) / samples, len(torn))
+        at, where = self.back.evaluate(*_along(np.repeat(torn, samples), steps))
         inside = (at >= 0) & (where.min(1) > 2 * INSIDE)
         return np.unique(self.target.polygons[at[inside]])
 
@@ -202,9 +218,21 @@ def _in_plane(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
     return np.stack([1 - second - third, second, third], 1)
 
 
+def _sides(triangles: np.ndarray) -> np.ndarray:
+    """(3 m, 2) the ends of the sides, that of corner 0 first."""
+    return np.stack([triangles, np.roll(triangles, -1, axis=1)], 2).reshape(-1, 2).astype(np.int64)
+
+
+def _along(corners: np.ndarray, steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Points on sides, that begin with these corners of all 3 m: (p,) triangles and (p, 3) barycentric coordinates."""
+    weights, rows = np.zeros((len(corners), 3)), np.arange(len(corners))
+    weights[rows, corners % 3], weights[rows, (corners + 1) % 3] = 1 - steps, steps
+    return corners // 3, weights
+
+
 def _torn(triangles: np.ndarray, corners: np.ndarray) -> np.ndarray:
     """(k,) where a UV map (m, 3, 2) is torn: of each such edge the corner, of all 3 m, that it begins with."""
-    ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], 2).reshape(-1, 2).astype(np.int64)
+    ends = _sides(triangles)
     values = np.stack([corners, np.roll(corners, -1, axis=1)], 2).reshape(-1, 2, corners.shape[-1])
     turned = ends[:, 0] > ends[:, 1]
     values[turned] = values[turned, ::-1]

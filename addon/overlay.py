@@ -125,8 +125,8 @@ def _drawn(context: bpy.types.Context, obj: bpy.types.Object) -> _Drawn:
 
 
 def _cone_colours(mesh: bpy.types.Mesh, cones: tuple) -> np.ndarray:
-    """Those of the pattern, which follow the sequence of the signature: on all meshes that of the list, but for corners,
-    and whatever was unwrapped before."""
+    """Those of the pattern, which follow the sequence of the signature: that of the list, but for corners. After a
+    change of the list it is no more that of the last unwrap."""
     colours = pattern.palette(max(len(cones), pattern.LEAST_CENTRES))
     latest = layouts.latest(mesh)
     places = layouts.cone_places(latest) if latest is not None else {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is ticked for Orbifold Transfer: the same settings in the redo panel and, kept with the scene, in the sidebar."""
+"""What is ticked for Orbifold Transfer: the same in the redo panel and, kept with the scene, in the sidebar."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ GROUPS = dict(
 COLOURS = dict(name="Colours", default=True, description="Colour attributes, of vertices and of face corners")
 ATTRIBUTES = dict(
     name="Attributes", default=True,
-    description="All other attributes of vertices and face corners: numbers and vectors are interpolated, whole numbers "
-    "and booleans are those of the nearest corner",
+    description="All other attributes of vertices and face corners: numbers and vectors are interpolated, whole "
+    "numbers and booleans are those of the nearest vertex",
 )
 UV_MAPS = dict(
     name="UV Maps", default=True,

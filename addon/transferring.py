@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Data of one object's mesh -> other objects', by surface maps: the jobs in turn (one for each mesh), then everything is
-computed, and at the end written at once. No operator, no context: operators/transfer.py polls the jobs, api.py waits
-for them. What is computed is in correspondence.py."""
+"""Data of one object's mesh -> other objects', by surface maps: the jobs in turn (one for each mesh), then everything
+is computed, and at the end written at once. No operator, no context: operators/transfer.py polls the jobs, api.py
+waits for them. What is computed is in correspondence.py."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from typing import Optional
 import bpy
 import numpy as np
 
-from . import arrangement, blender_mesh, cones, core, heat
+from . import arrangement, blender_mesh, cones, core, cut_paths, heat, layouts
 from .correspondence import Correspondence, orbifold_for
 
 FORM = "Form of {}"  # shape keys
+TWISTED = 3.0  # times as long as its own a mapped cut is, from which on it is said
 
 
 @dataclass(frozen=True)
@@ -66,6 +67,7 @@ class Outcome:
     target: Member
     distortion: core.MapDistortion
     landmark_residual: float
+    cut_ratio: float
     writes: list[Callable[[], object]] = field(default_factory=list)
     names: dict[str, list[str]] = field(default_factory=dict)  # of what is written, by kind
     crossing: np.ndarray = field(default_factory=lambda: np.zeros(0, int))  # faces that a seam runs through
@@ -161,8 +163,8 @@ class Transferring:
             self.at, own = member.obj, member.places
             if (own.cones, own.borders) != (places.cones, places.borders):
                 raise blender_mesh.BlenderMeshError(
-                    f"The landmarks of {self.source.obj.name} and {member.obj.name} lie differently on borders: those in "
-                    "the same places of the lists have to be on corresponding borders, in turn along them, or inside"
+                    f"The landmarks of {self.source.obj.name} and {member.obj.name} lie differently on borders: those "
+                    "in the same places of the lists have to be on corresponding borders, in turn along them, or inside"
                 )
         count = len(self.source.landmarks)
         text = orbifold_for(lambda order: places.text([order] * count))
@@ -244,7 +246,7 @@ class Transferring:
         to_source = core.SurfaceMap(target.result, self.source.result)
         back = core.SurfaceMap(self.source.result, target.result)
         work = Correspondence(self.source.arrays, target.arrays, to_source, back)
-        outcome = Outcome(target, to_source.distortion, to_source.landmark_residual)
+        outcome = Outcome(target, to_source.distortion, to_source.landmark_residual, work.cut_ratio)
         if self.wishes.groups:
             self._add_groups(work, outcome)
         self._add_attributes(work, outcome)
@@ -331,6 +333,8 @@ class Transferring:
                     write()
                 if len(outcome.crossing):
                     blender_mesh.select_elements(outcome.target.obj.data, nothing, nothing, outcome.crossing)
+            for member in self.members:
+                _draw_paths(member)
 
     def message(self) -> str:
         said = [f"{outcome.target.obj.name}: {_described(outcome)}" for outcome in self.outcomes]
@@ -338,7 +342,9 @@ class Transferring:
 
     @property
     def warned(self) -> bool:
-        return any(len(outcome.crossing) or outcome.locked for outcome in self.outcomes)
+        return any(
+            len(outcome.crossing) or outcome.locked or outcome.cut_ratio > TWISTED for outcome in self.outcomes
+        )
 
     def report(self) -> dict:
         return {
@@ -352,6 +358,7 @@ class Transferring:
                     "locked_groups": outcome.locked,
                     "crossing_faces": outcome.crossing.tolist(),
                     "landmark_residual": outcome.landmark_residual,
+                    "cut_ratio": outcome.cut_ratio,
                     "flipped": outcome.distortion.flipped,
                     "bijective": True,  # both embeddings are certified
                     "distortion": {
@@ -370,6 +377,11 @@ def _described(outcome: Outcome) -> str:
         f"mean angle distortion {distortion.quasi_conformal_mean:.3f}, area spread {distortion.log_area_std:.2f}, "
         "a bijection."
     )
+    if outcome.cut_ratio > TWISTED:
+        text += (
+            f" The source's landmark paths become {outcome.cut_ratio:.1f} times as long as its own: the map may be "
+            "twisted, which another order of the landmarks mends."
+        )
     if len(outcome.crossing):
         text += f" {len(outcome.crossing)} faces cross a seam of the source's UV maps: they are selected."
     if outcome.locked:
@@ -396,6 +408,22 @@ def _write_group(
     blender_mesh.write_group_weights(obj, name, weights, among)
     if not there:
         obj.vertex_groups[name].lock_weight = locked
+
+
+def _draw_paths(member: Member) -> None:
+    """The cut through the landmarks, numbered alike on all meshes, is drawn where there is none of a layout."""
+    mesh, result = member.obj.data, member.result
+    if layouts.has_layout(mesh):
+        return
+    seams = result.seams[(result.seams < len(mesh.vertices)).all(1)]
+    numbers = cut_paths.number_paths(seams, result.cones)
+    place = {int(vertex): number for number, vertex in enumerate(result.cones)}
+    first = [
+        min((place[vertex] for vertex in seams[numbers == path].ravel().tolist() if vertex in place), default=path)
+        for path in range(int(numbers.max(initial=-1)) + 1)
+    ]
+    layouts.keep_cut(mesh, seams, np.array(first, int)[numbers])
+    mesh.update()
 
 
 def _component(

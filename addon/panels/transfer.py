@@ -10,6 +10,9 @@ from ..operators.jobs import mesh_problem
 from ..operators.transfer import targets_of
 
 
+ROWS = 16  # landmarks that are listed at most
+
+
 class VIEW3D_PT_orbifold_transfer(bpy.types.Panel):
     bl_idname = "VIEW3D_PT_orbifold_transfer"
     bl_label = "Transfer"
@@ -25,7 +28,10 @@ class VIEW3D_PT_orbifold_transfer(bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         settings = context.scene.orbifold_transfer
-        draw_meshes(layout, context.active_object, targets_of(context))
+        source, targets = context.active_object, targets_of(context)
+        draw_meshes(layout, source, targets)
+        if targets:
+            draw_landmarks(layout, source, targets[0])
         layout.operator("object.orbifold_suggest_order", icon="SORTSIZE")
         layout.prop(settings, "signature")
         column = layout.column(align=True)
@@ -54,6 +60,22 @@ def draw_meshes(
         split.label(text="1 landmark" if count == 1 else f"{count} landmarks")
     if not targets:
         column.label(text="Select the target meshes too", icon="INFO")
+
+
+def draw_landmarks(layout: bpy.types.UILayout, source: bpy.types.Object, target: bpy.types.Object) -> None:
+    """Those that correspond side by side, as vertices; red where one is missing."""
+    lists = [[str(item.vertex) for item in obj.data.orbifold.cones] for obj in (source, target)]
+    longest = max(map(len, lists))
+    column = layout.column(align=True)
+    for number in range(min(longest, ROWS)):
+        row = column.row()
+        texts = [own[number] if number < len(own) else "missing" for own in lists]
+        row.alert = "missing" in texts
+        split = row.split(factor=0.5)
+        split.label(text=f"{number + 1}.  {texts[0]}")
+        split.label(text=texts[1])
+    if longest > ROWS:
+        column.label(text=f"and {longest - ROWS} more")
 
 
 CLASSES = (VIEW3D_PT_orbifold_transfer,)

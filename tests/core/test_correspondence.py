@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a target gets from a source (addon/correspondence.py): UV maps on both sides of a seam, displacements, orbifolds."""
+"""What a target gets from a source (addon/correspondence.py): UV maps beside seams, displacements, orbifolds."""
 
 from dataclasses import dataclass
 from functools import lru_cache

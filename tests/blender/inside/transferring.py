@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Orbifold Transfer: what comes over from mesh to mesh, what is refused, undo; Suggest Order; the panel; the Python API."""
+"""Orbifold Transfer: what comes over, what is refused, undo; Suggest Order; the panel; the Python API."""
 
 import importlib
 import os
@@ -31,7 +31,8 @@ def copy_of(obj, name="Copy", shuffled=True, subdivided=False):
     moved = [None] * len(vertices)
     for old, new in enumerate(place.tolist()):
         moved[new] = vertices[old]
-    faces = [[int(place[v]) for v in faces[k]] for k in (random.permutation(len(faces)) if shuffled else range(len(faces)))]
+    turn = random.permutation(len(faces)) if shuffled else np.arange(len(faces))
+    faces = [[int(place[v]) for v in faces[k]] for k in turn.tolist()]
     mesh = bpy.data.meshes.new(name)
     mesh.from_pydata(moved, [], faces)
     if subdivided:
@@ -164,7 +165,8 @@ def check_only_what_is_ticked():
     filled(source)
     bpy.ops.object.orbifold_transfer(groups=False, attributes=False, uv_maps=False)
     assert not len(target.vertex_groups) and not len(target.data.uv_layers)
-    assert {a.name for a in target.data.color_attributes} == {"colour", "byte"} and "heights" not in target.data.attributes
+    assert {a.name for a in target.data.color_attributes} == {"colour", "byte"}
+    assert "heights" not in target.data.attributes
     assert target.data.shape_keys is None and source.data.shape_keys is None
     assert target.data.color_attributes.active_color is not None, "the viewport shows none otherwise"
 
@@ -408,7 +410,8 @@ def check_the_api():
     assert api.transfer(source, [target], landmarks=lists, signature="222")["geometry"] == "spherical"
     bpy.ops.object.mode_set(mode="OBJECT")
     for arguments, said in (
-        ((source, [target], lists[:1]), "lists of landmarks for 2 meshes"), ((source, [target]), "0 landmarks are too few"),
+        ((source, [target], lists[:1]), "lists of landmarks for 2 meshes"),
+        ((source, [target]), "0 landmarks are too few"),
         ((source, [target], [lists[0], [-1, 0, 1]]), "no vertex -1"), ((source, [None]), "no mesh object"),
     ):
         try:
@@ -434,7 +437,8 @@ def check_a_disk_with_corners():
     target, place = copy_of(source)
     border = np.flatnonzero(blender_mesh.boundary_vertices(source.data)).tolist()
     points = positions(source)
-    corners = [border[int(np.argmax(points[border] @ np.array([np.cos(a), np.sin(a), 0])))] for a in (0.3, 1.9, 3.5, 5.0)]
+    towards = [np.array([np.cos(angle), np.sin(angle), 0]) for angle in (0.3, 1.9, 3.5, 5.0)]
+    corners = [border[int(np.argmax(points[border] @ one))] for one in towards]
     set_cones(source, "*2222", corners)
     set_cones(target, "*2222", place[corners].tolist())
     filled(source)
