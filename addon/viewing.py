@@ -31,8 +31,8 @@ class OrbifoldView(bpy.types.PropertyGroup):
     show_cut: BoolProperty(
         name="Cut",
         description="Draw the cut of the last unwrap, or the landmark paths of the last transfer. A "
-        "path on the mesh is two sides of the tile that are glued: in the UV editor, in edit mode, both have the path's "
-        "colour",
+        "path on the mesh is two sides of the tile that are glued: in the UV editor, in edit mode, both have the "
+        "path's colour",
         default=True,
         update=_changed,
     )

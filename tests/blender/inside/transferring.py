@@ -446,7 +446,7 @@ def check_a_disk_with_corners():
     assert kind == "INFO" and "by *2222" in said, said
     assert np.abs(at_vertices(target, "places") - positions(target)).max() < 1e-4
     inside = [v for v in range(len(points)) if v not in border]
-    set_cones(target, "*222", [inside[0], *place[corners[1:]].tolist()])
+    set_cones(target, "2*222", [int(place[inside[0]]), *place[corners[1:]].tolist()])
     said = raises(bpy.ops.object.orbifold_transfer)
     assert "lie differently on borders" in said, said
 
