@@ -233,12 +233,37 @@ def stroke() -> Generator:
     yield
 
 
+def transferring() -> Generator:
+    """Two creatures with landmarks; the colours of one are on both."""
+    yield from bare()
+    obj = bpy.context.object
+    obj.name = "creature"
+    twin = twin_of(obj)
+    points = np.array([vertex.co[:] for vertex in obj.data.vertices])
+    colours = np.column_stack([0.5 + 0.45 * np.sin(4 * points + [0, 2, 4]), np.ones(len(points))])
+    part("blender_mesh").write_vertex_colour(obj.data, "Stripes", colours)
+    area_of("VIEW_3D").spaces.active.shading.color_type = "VERTEX"
+    look((76, 0, 20), (1.7, 0, 1.6), 1.75 * FAR)
+    with inside():
+        bpy.ops.object.orbifold_suggest_order("INVOKE_DEFAULT", True)
+        bpy.ops.object.orbifold_transfer("INVOKE_DEFAULT", True)
+    yield lambda: "Stripes" in twin.data.attributes
+    yield from tab("Show")
+    region = region_of("VIEW_3D", "UI")
+    for row in (1, 2):  # fold Show, and unfold Transfer
+        yield from click(region.x + 0.4 * region.width, region.y + region.height - (15 + 23 * row) * SCALE)
+        yield from pause(3)
+    yield from away()
+    yield from photograph(f"{folder}/transferring.png")
+
+
 SIDE, MIDDLE, FAR = (72, 0, 62), (0, 0, 1.75), 5.6  # how the creature is looked at
 EARS_AND_TAIL = ("ear", "other ear", "tail")
 SCENES: dict[str, Callable[[], Generator]] = {
     scene.__name__: scene
     for scene in (
         one_click, redo, picking, signatures, layout, heat, pattern, suggesting, checking, painting, stroke,
+        transferring,
     )
 }
 
@@ -280,6 +305,24 @@ def petals() -> Generator:
     look((55, 0, 160), (0.1, -0.6, 2.1), 2.4)
     shade("MATERIAL")
     yield from pause(40)
+
+
+def twin_of(obj: bpy.types.Object) -> bpy.types.Object:
+    """Another creature beside it: shorter, stouter, turned to the side, with corresponding cones."""
+    points = np.array([vertex.co[:] for vertex in obj.data.vertices])
+    landmarks = [nearest(obj, place) for place in PLACES.values()]
+    landmarks += [int((points @ way).argmin()) for way in ([0.4, 0.2, 1], [-0.4, 0.2, 1], [0.4, -0.2, 1], [-0.4, -0.2, 1])]
+    other = bpy.data.objects.new("twin", obj.data.copy())
+    bpy.context.scene.collection.objects.link(other)
+    x, y, z = points.T
+    bent = np.column_stack([1.25 * x + 0.06 * z**2, 1.1 * y, 0.72 * z])
+    other.data.vertices.foreach_set("co", bent.astype(np.float32).ravel())
+    other.location, other.name = (3.1, 0.6, 0), "twin"
+    other.data.update()
+    for one in (obj, other):
+        part("properties").set_cones(one.data, landmarks, [2] * len(landmarks))
+        one.select_set(True)
+    return other
 
 
 def pixels_of(image: bpy.types.Image) -> np.ndarray:
