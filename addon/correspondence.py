@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 
 INSIDE = 1e-6  # how far within its face a corner is looked up, in barycentric coordinates
 SAMPLES = 32  # points on each edge of a seam, at least
-MOST_SAMPLES = 512
+MOST_SAMPLES = 512  # on an edge
+ALL_SAMPLES = 3_000_000  # of a UV map, about: it may be torn along all edges
 CUT_SAMPLES = 9  # points on each edge of the cut
 TORN = 1e-6  # difference of two UVs from which on an edge is a seam
 ASTRAY = 0.75  # from where the affine map of a face's middle has a corner, in the face's size: it is beyond a seam
@@ -169,6 +170,7 @@ class Correspondence:
         """The target's faces in whose inside there are points of these edges (k,), by corner of the source's."""
         finer = np.sqrt(len(self.target.triangles) / max(len(self.source.triangles), 1))
         samples = int(np.clip(SAMPLES * finer, SAMPLES, MOST_SAMPLES))
+        samples = max(min(samples, ALL_SAMPLES // max(len(torn), 1)), 4)
         steps = np.tile((np.arange(samples) + 0.5) / samples, len(torn))
         at, where = self.back.evaluate(*_along(np.repeat(torn, samples), steps))
         inside = (at >= 0) & (where.min(1) > 2 * INSIDE)

@@ -18,7 +18,7 @@ from . import arrangement, blender_mesh, cones, core, cut_paths, heat, layouts
 from .correspondence import Correspondence, orbifold_for
 
 FORM = "Form of {}"  # shape keys
-TWISTED = 3.0  # times as long as its own a mapped cut is, from which on it is said
+MUCH = 2.0  # a map's mean angle distortion, and how many times as long as its own a mapped cut is: more is said
 
 
 @dataclass(frozen=True)
@@ -72,6 +72,11 @@ class Outcome:
     names: dict[str, list[str]] = field(default_factory=dict)  # of what is written, by kind
     crossing: np.ndarray = field(default_factory=lambda: np.zeros(0, int))  # faces that a seam runs through
     locked: list[str] = field(default_factory=list)  # vertex groups
+
+    @property
+    def strained(self) -> bool:
+        """As maps are whose landmarks do not correspond, or that are twisted."""
+        return max(self.distortion.quasi_conformal_mean, self.cut_ratio) > MUCH
 
     def add(self, kind: str, name: str, write: Callable[[], object]) -> None:
         self.names.setdefault(kind, []).append(name)
@@ -193,10 +198,11 @@ class Transferring:
             )
 
     def _attributes(self) -> list[tuple[str, str, str]]:
-        """(name, domain, type) of those of the source that are wanted; none of ours."""
+        """(name, domain, type) of those of the source that are wanted, colours first; none of ours."""
         mesh, ours = self.members[0].obj.data, {measure.colour for measure in heat.MEASURES}
+        found = sorted(blender_mesh.plain_attributes(mesh), key=lambda one: one[0] not in mesh.color_attributes)
         return [
-            one for one in blender_mesh.plain_attributes(mesh)
+            one for one in found
             if not one[0].startswith("orbifold_") and one[0] not in ours
             and (self.wishes.colours if one[0] in mesh.color_attributes else self.wishes.attributes)
         ]
@@ -343,7 +349,7 @@ class Transferring:
     @property
     def warned(self) -> bool:
         return any(
-            len(outcome.crossing) or outcome.locked or outcome.cut_ratio > TWISTED for outcome in self.outcomes
+            len(outcome.crossing) or outcome.locked or outcome.strained for outcome in self.outcomes
         )
 
     def report(self) -> dict:
@@ -373,14 +379,17 @@ class Transferring:
 
 def _described(outcome: Outcome) -> str:
     distortion = outcome.distortion
+    counts = [f"{len(names)} {kind}" if len(names) > 1 else f"1 {kind.rstrip('s')}"
+              for kind, names in outcome.names.items()]
     text = (
+        f"{', '.join(counts) or 'nothing, as the source has none of what is ticked'}; "
         f"mean angle distortion {distortion.quasi_conformal_mean:.3f}, area spread {distortion.log_area_std:.2f}, "
         "a bijection."
     )
-    if outcome.cut_ratio > TWISTED:
+    if outcome.strained:
         text += (
-            f" The source's landmark paths become {outcome.cut_ratio:.1f} times as long as its own: the map may be "
-            "twisted, which another order of the landmarks mends."
+            f" That is much, and the source's landmark paths become {outcome.cut_ratio:.1f} times as long as its own: "
+            "look whether the landmarks correspond, and whether another order of them mends a twist."
         )
     if len(outcome.crossing):
         text += f" {len(outcome.crossing)} faces cross a seam of the source's UV maps: they are selected."

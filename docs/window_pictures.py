@@ -243,7 +243,7 @@ def transferring() -> Generator:
     colours = np.column_stack([0.5 + 0.45 * np.sin(4 * points + [0, 2, 4]), np.ones(len(points))])
     part("blender_mesh").write_vertex_colour(obj.data, "Stripes", colours)
     area_of("VIEW_3D").spaces.active.shading.color_type = "VERTEX"
-    look((76, 0, 20), (1.7, 0, 1.6), 1.75 * FAR)
+    look((76, 0, 20), (1.6, 0, 1.5), 1.25 * FAR)
     with inside():
         bpy.ops.object.orbifold_suggest_order("INVOKE_DEFAULT", True)
         bpy.ops.object.orbifold_transfer("INVOKE_DEFAULT", True)
@@ -254,7 +254,7 @@ def transferring() -> Generator:
         yield from click(region.x + 0.4 * region.width, region.y + region.height - (15 + 23 * row) * SCALE)
         yield from pause(3)
     yield from away()
-    yield from photograph(f"{folder}/transferring.png")
+    yield from photograph(f"{folder}/transferring.png", (0, 0, 1, 0.85))
 
 
 SIDE, MIDDLE, FAR = (72, 0, 62), (0, 0, 1.75), 5.6  # how the creature is looked at
@@ -311,7 +311,8 @@ def twin_of(obj: bpy.types.Object) -> bpy.types.Object:
     """Another creature beside it: shorter, stouter, turned to the side, with corresponding cones."""
     points = np.array([vertex.co[:] for vertex in obj.data.vertices])
     landmarks = [nearest(obj, place) for place in PLACES.values()]
-    landmarks += [int((points @ way).argmin()) for way in ([0.4, 0.2, 1], [-0.4, 0.2, 1], [0.4, -0.2, 1], [-0.4, -0.2, 1])]
+    feet = ([0.4, 0.2, 1], [-0.4, 0.2, 1], [0.4, -0.2, 1], [-0.4, -0.2, 1])
+    landmarks += [int((points @ way).argmin()) for way in feet]
     other = bpy.data.objects.new("twin", obj.data.copy())
     bpy.context.scene.collection.objects.link(other)
     x, y, z = points.T

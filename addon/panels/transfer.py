@@ -33,7 +33,9 @@ class VIEW3D_PT_orbifold_transfer(bpy.types.Panel):
         if targets:
             draw_landmarks(layout, source, targets[0])
         layout.operator("object.orbifold_suggest_order", icon="SORTSIZE")
-        layout.prop(settings, "signature")
+        column = layout.column(align=True)
+        column.label(text="Orbifold (empty: automatic)")
+        column.prop(settings, "signature", text="")
         column = layout.column(align=True)
         for name in transfer_settings.NAMES:
             if name != "signature":

@@ -163,7 +163,8 @@ def check_all_of_it_comes_over_to_the_same_surface():
 def check_only_what_is_ticked():
     source, target, _ = pair()
     filled(source)
-    bpy.ops.object.orbifold_transfer(groups=False, attributes=False, uv_maps=False)
+    _, said = reported(bpy.ops.object.orbifold_transfer, groups=False, attributes=False, uv_maps=False)
+    assert "Copy: 2 colours; mean" in said, said
     assert not len(target.vertex_groups) and not len(target.data.uv_layers)
     assert {a.name for a in target.data.color_attributes} == {"colour", "byte"}
     assert "heights" not in target.data.attributes
@@ -247,12 +248,22 @@ def check_several_targets_and_the_heat_map():
     set_cones(other, "222", place[[vertex for vertex, _ in picked(source)]].tolist())
     filled(source)
     kind, said = reported(bpy.ops.object.orbifold_transfer, heat=True)
-    assert kind == "INFO" and "Copy: mean" in said and "Other: mean" in said, said
+    counts = "2 vertex groups, 2 colours, 4 attributes, 1 UV map, 1 heat map; mean angle"
+    assert kind == "INFO" and said.count(counts) == 2, said
     for obj in (target, other):
         assert "heights" in obj.data.attributes and part("heat").shown(obj.data).colour == "Orbifold Map"
         assert np.abs(at_vertices(obj, "orbifold_map")).max() < 1e-3
     bpy.context.view_layer.objects.active = target
     assert bpy.ops.mesh.orbifold_hide_distortion() == {"FINISHED"} and "Orbifold Map" not in target.data.attributes
+
+
+def check_landmarks_that_do_not_correspond_are_warned_of():
+    source, target, _ = pair(lambda: blob(4), FEW)
+    others = [vertex for vertex, _ in picked(target)]
+    others[1], others[4] = others[4], others[1]
+    set_cones(target, "2" * FEW, others)
+    kind, said = reported(bpy.ops.object.orbifold_transfer)
+    assert kind == "WARNING" and "look whether the landmarks correspond" in said, said
 
 
 # ------------------------------------------------------------------------------------------------- what is refused
