@@ -10,7 +10,7 @@ import ctypes
 import functools
 import sys
 import weakref
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from ctypes import POINTER, Structure, c_bool, c_char, c_char_p, c_double, c_int, c_int32, c_int64, c_void_p
 from pathlib import Path
 
@@ -495,8 +495,8 @@ def mesh_arrays(vertices: np.ndarray, triangles: np.ndarray) -> MeshArrays:
 
 
 class Job:
-    """An orb_job: one of the three kinds below. One that is dropped without `finish` is cancelled, and its thread cleans
-    up after itself."""
+    """An orb_job: one of the three kinds below. One that is dropped without `finish` is cancelled, and its thread
+    cleans up after itself."""
 
     START: str  # the library's function
 

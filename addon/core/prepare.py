@@ -21,6 +21,6 @@ class PreparedMesh:
 
 
 def prepare(vertices: ArrayLike, triangles: ArrayLike) -> PreparedMesh:
-    """(n, 3) coordinates, (m, 3) integers; arrays may change afterwards. Raises OrbifoldError where the mesh is wrong."""
+    """(n, 3) coordinates, (m, 3) integers; arrays may change afterwards. Raises OrbifoldError where the mesh is bad."""
     points, faces = mesh_of(vertices, triangles)
     return PreparedMesh(binding.Prepared(points, faces), len(points))

@@ -2,11 +2,11 @@
 """Keeps faces whole in a layout that was computed on the library's triangles.
 
 A face is one of the triangles that were given, or several that make a polygon. It has one texture coordinate for each
-corner, so no seam may run inside it. The library never cuts through a triangle, but along a diagonal of a polygon it may.
-Where it does, the face's triangles are put together again: the layout is only defined up to the orbifold's group, and the isometry that
-carries one copy of the inner edge to the other moves a triangle to where the face continues; it turns the triangle
-over where the cut runs along a cross-cap. The seam then runs around the face instead of through it. (Isometries as in
-native/src/geometry.h: z is the complex chart, z -> (z - p) / (1 + K conj(p) z) takes p to the origin.)
+corner, so no seam may run inside it. The library never cuts through a triangle, but along a diagonal of a polygon it
+may. Where it does, the face's triangles are put together again: the layout is only defined up to the orbifold's group,
+and the isometry that carries one copy of the inner edge to the other moves a triangle to where the face continues; it
+turns the triangle over where the cut runs along a cross-cap. The seam then runs around the face instead of through it.
+(Isometries as in native/src/geometry.h: z is the complex chart, z -> (z - p) / (1 + K conj(p) z) takes p to the origin.)
 
 Two charts of the sphere have a discontinuity of their own, a date line or folds. No face crosses it either: a face
 stays on the side of its first corner and may stick out of the unit square.

@@ -46,8 +46,8 @@ class UVOperator(EmbeddingOperator):
     )
     mark_seams: BoolProperty(
         name="Mark Seams",
-        description="Mark the cut as seams, in place of the one of an earlier Orbifold Unwrap. Your own seams stay. Without "
-        "it the cut is drawn all the same",
+        description="Mark the cut as seams, in place of the one of an earlier Orbifold Unwrap. Your own seams stay. "
+        "Without it the cut is drawn all the same",
         default=True,
     )
     sphere_key: BoolProperty(

@@ -74,7 +74,8 @@ class MESH_UL_orbifold_cones(bpy.types.UIList):
     def draw_item(self, _context, layout, _data, item, _icon, _active_data, _active_property, index=0) -> None:
         row = layout.row(align=True)
         split = row.split(factor=0.64)
-        split.label(text=f"{index + 1}.  {item.vertex}", icon="MOD_MIRROR" if item.mirror else "NONE")  # room for digits
+        icon = "MOD_MIRROR" if item.mirror else "NONE"  # no icon at all: room for digits
+        split.label(text=f"{index + 1}.  {item.vertex}", icon=icon)
         split.prop(item, "order", text="")
         jump = row.operator("mesh.orbifold_jump_to_cone", text="", icon="RESTRICT_SELECT_OFF", emboss=False)
         jump.index = index

@@ -6,7 +6,6 @@ import importlib.util
 import sys
 from pathlib import Path
 
-import bpy
 import numpy as np
 
 answer, addon, *files = map(Path, sys.argv[sys.argv.index("--") + 1 :])

@@ -49,6 +49,8 @@ def in_window(home: Home, script: str, *more: str) -> dict:
     if shutil.which("import") is None:
         pytest.skip("there is no import to look at the screen with: apt-get install imagemagick")
     out, folder = home.folder / f"{script}.json", os.environ.get("ORBIFOLD_SCREENSHOTS")
+    if folder:
+        Path(folder).mkdir(parents=True, exist_ok=True)
     pictures = "-" if not folder else str(Path(folder) / Path(script).stem)
     command = ["xvfb-run", "-a", "-s", "-screen 0 1280x900x24 +extension GLX", home.blender, "--factory-startup"]
     command += ["--enable-event-simulate", "--window-geometry", "0", "0", "1280", "900"]

@@ -14,7 +14,7 @@ import numpy as np
 sys.path.insert(0, os.path.dirname(__file__))
 import grids  # noqa: E402
 from harness import (  # noqa: E402
-    blob, click, digest, edit_mode, enable, far_vertices, mesh_object, object_mode, part, picked, quad_blob, raises,
+    blob, click, digest, edit_mode, enable, mesh_object, object_mode, part, picked, quad_blob, raises,
     run_checks, set_cones, user,
 )
 
