@@ -147,6 +147,7 @@ def transfer(
     colours: bool = True,
     attributes: bool = True,
     uv_maps: bool = True,
+    texture: bool = False,
     form: bool = False,
     form_back: bool = False,
     shape_keys: bool = False,
@@ -177,8 +178,9 @@ def transfer(
             "for each, that of the source first"
         )
     wishes = Wishes(
-        groups=groups, colours=colours, attributes=attributes, uv_maps=uv_maps, form=form, form_back=form_back,
-        shape_keys=shape_keys, heat=heat, signature=signature, weights=weights, clamp=clamp, holes=holes,
+        groups=groups, colours=colours, attributes=attributes, uv_maps=uv_maps, texture=texture, form=form,
+        form_back=form_back, shape_keys=shape_keys, heat=heat, signature=signature, weights=weights, clamp=clamp,
+        holes=holes,
     )
     with _expected(source, *chosen):
         work = Transferring(source, chosen, wishes, landmarks)

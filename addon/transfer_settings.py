@@ -20,6 +20,11 @@ UV_MAPS = dict(
     name="UV Maps", default=True,
     description="Faces that a seam of the source runs through continue the island of their middle, and are selected",
 )
+TEXTURE = dict(
+    name="Image Texture", default=False,
+    description="Bake the image of the source's active material to the active UV map of each target, texel by texel: "
+    "an image of the same size, in a copy of the material. No seam of either mesh shows",
+)
 FORM = dict(
     name="Form as a Shape Key", default=False,
     description="Give each target a shape key that takes the form of the source, in object coordinates",
@@ -41,7 +46,9 @@ SIGNATURE = dict(
     description="The signature with which all meshes are embedded, with as many numbers as there are landmarks. Empty: "
     "333 for three landmarks, 2222 for four in the plane, and cones of order 2 in the hyperbolic plane for more",
 )
-NAMES = ("groups", "colours", "attributes", "uv_maps", "form", "form_back", "shape_keys", "heat", "signature")
+NAMES = (
+    "groups", "colours", "attributes", "uv_maps", "texture", "form", "form_back", "shape_keys", "heat", "signature",
+)
 
 
 class OrbifoldTransfer(bpy.types.PropertyGroup):
@@ -51,6 +58,7 @@ class OrbifoldTransfer(bpy.types.PropertyGroup):
     colours: BoolProperty(**COLOURS)
     attributes: BoolProperty(**ATTRIBUTES)
     uv_maps: BoolProperty(**UV_MAPS)
+    texture: BoolProperty(**TEXTURE)
     form: BoolProperty(**FORM)
     form_back: BoolProperty(**FORM_BACK)
     shape_keys: BoolProperty(**SHAPE_KEYS)

@@ -14,7 +14,7 @@ from typing import Optional
 import bpy
 import numpy as np
 
-from . import arrangement, blender_mesh, cones, core, cut_paths, heat, layouts
+from . import arrangement, baking, blender_mesh, cones, core, cut_paths, heat, layouts, textures
 from .correspondence import Correspondence, orbifold_for
 
 FORM = "Form of {}"  # shape keys
@@ -29,6 +29,7 @@ class Wishes:
     attributes: bool = True
     colours: bool = True
     uv_maps: bool = True
+    texture: bool = False  # the image of the source's material, to the targets' active UV maps
     form: bool = False  # a shape key of each target: the source's form
     form_back: bool = False  # a shape key of the source for each target: its form
     shape_keys: bool = False
@@ -40,8 +41,8 @@ class Wishes:
 
     @property
     def any(self) -> bool:
-        wanted = (self.groups, self.attributes, self.colours, self.uv_maps, self.form, self.form_back, self.shape_keys)
-        return any((*wanted, self.heat))
+        ticked = (self.groups, self.attributes, self.colours, self.uv_maps, self.texture, self.form, self.form_back)
+        return any((*ticked, self.shape_keys, self.heat))
 
 
 @dataclass
@@ -130,6 +131,7 @@ class Transferring:
             self.members = [self._member(obj, list(own)) for obj, own in zip(objects, found)]
             self.at = source
             self.signature = self._signature()
+            self._texture = textures.find(source) if self.wishes.texture else None
             for target in targets:
                 self.at = target
                 self._check_names(source, target)
@@ -191,6 +193,14 @@ class Transferring:
                 blender_mesh.check_uv_space(target.data, name)
         except blender_mesh.BlenderMeshError as error:
             raise blender_mesh.BlenderMeshError(f"{target.name}: {error}") from error
+        own = target.data.uv_layers.active
+        if self.wishes.texture and own is None:
+            raise blender_mesh.BlenderMeshError(f"{target.name} has no UV map to bake to: unwrap it first")
+        if self.wishes.texture and own.name in self._uv_maps():
+            raise blender_mesh.BlenderMeshError(
+                f'The UV map "{own.name}" of {target.name} would be replaced by that of {source.name}, and is to be '
+                "baked to: do not tick UV Maps, or rename it"
+            )
         more = [name for name in self._uv_maps() if name not in target.data.uv_layers]
         if len(target.data.uv_layers) + len(more) > blender_mesh.MAX_UV_MAPS:
             raise blender_mesh.BlenderMeshError(
@@ -257,6 +267,8 @@ class Transferring:
             self._add_groups(work, outcome)
         self._add_attributes(work, outcome)
         self._add_uv_maps(work, outcome)
+        if self._texture is not None:
+            self._add_texture(work, outcome)
         self._add_forms(work, outcome)
         if self.wishes.shape_keys:
             self._add_shape_keys(work, outcome)
@@ -303,6 +315,15 @@ class Transferring:
             outcome.add("UV maps", name, partial(
                 blender_mesh.write_uv_of_loops, outcome.target.obj.data, uv, work.corners.there, name
             ))
+
+    def _add_texture(self, work: Correspondence, outcome: Outcome) -> None:
+        texture, target = self._texture, outcome.target
+        own = target.obj.data.uv_layers.active.name
+        uv = blender_mesh.read_uv(target.obj.data, own).astype(np.float64)[target.arrays.loops]
+        from_uv = blender_mesh.read_uv(self.source.obj.data, texture.uv_map).astype(np.float64)
+        corners = from_uv[self.source.arrays.loops]
+        pixels = baking.bake(uv, *texture.image.size, work.map.evaluate, corners, texture.pixels())
+        outcome.add("images", texture.image.name, partial(textures.write, target.obj, texture, pixels, own))
 
     def _add_forms(self, work: Correspondence, outcome: Outcome) -> None:
         source, target = self.source, outcome.target

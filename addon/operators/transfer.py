@@ -53,6 +53,7 @@ class OBJECT_OT_orbifold_transfer(JobOperator, bpy.types.Operator):
     colours: BoolProperty(**transfer_settings.COLOURS)
     attributes: BoolProperty(**transfer_settings.ATTRIBUTES)
     uv_maps: BoolProperty(**transfer_settings.UV_MAPS)
+    texture: BoolProperty(**transfer_settings.TEXTURE)
     form: BoolProperty(**transfer_settings.FORM)
     form_back: BoolProperty(**transfer_settings.FORM_BACK)
     shape_keys: BoolProperty(**transfer_settings.SHAPE_KEYS)

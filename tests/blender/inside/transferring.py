@@ -257,6 +257,57 @@ def check_several_targets_and_the_heat_map():
     assert bpy.ops.mesh.orbifold_hide_distortion() == {"FINISHED"} and "Orbifold Map" not in target.data.attributes
 
 
+def pictured(obj, size=256):
+    """An object with a material that shows an image by its map Longitude: red is the height, green a wave."""
+    y, x = (np.mgrid[0:size, 0:size] + 0.5) / size
+    pixels = np.stack([y, 0.5 + 0.5 * np.sin(2 * np.pi * x), 0 * x, 1 + 0 * x], 2)
+    image = bpy.data.images.new("Waves", size, size, alpha=True, float_buffer=True)
+    image.pixels.foreach_set(pixels.astype(np.float32).ravel())
+    material = bpy.data.materials.new("Wavy")
+    blender_mesh.enable_nodes(material)
+    node = material.node_tree.nodes.new("ShaderNodeTexImage")
+    node.image = image
+    obj.data.materials.append(material)
+    uv = longitude(obj)
+    write_uv(obj, np.column_stack([uv[:, 0], 0.5 + 0.25 * uv[:, 1]]))
+
+
+def check_an_image_is_baked_without_seams():
+    source, target, place = pair(lambda: blob(4), 5)
+    pictured(source)
+    off = dict(groups=False, attributes=False, colours=False)
+    assert "no UV map to bake to" in raises(bpy.ops.object.orbifold_transfer, texture=True, uv_maps=False, **off)
+    assert bpy.ops.uv.orbifold_unwrap(signature="2" * 5) == {"FINISHED"}  # the source: another map becomes active
+    source.data.uv_layers["Longitude"].active_render = True
+    bpy.context.view_layer.objects.active = target
+    assert bpy.ops.uv.orbifold_unwrap(signature="2" * 5) == {"FINISHED"}
+    bpy.context.view_layer.objects.active = source
+    assert "would be replaced" in raises(bpy.ops.object.orbifold_transfer, texture=True, **off)
+    for _ in range(2):  # the second time in place of the first
+        _, said = reported(bpy.ops.object.orbifold_transfer, texture=True, uv_maps=False, **off)
+        assert "Copy: 1 image; mean" in said, said
+    (material,) = target.data.materials
+    node = next(node for node in material.node_tree.nodes if node.type == "TEX_IMAGE")
+    assert material.name == "Wavy on Copy" and node.image.name == "Waves on Copy" and node.image.packed_file is not None
+    assert node.inputs["Vector"].links[0].from_node.uv_map == "Orbifold"
+    assert sorted(image.name for image in bpy.data.images if image.name.startswith("Wav")) == ["Waves", "Waves on Copy"]
+    assert all(polygon.material_index == 0 for polygon in target.data.polygons)
+    size = node.image.size[0]
+    pixels = np.empty(4 * size * size, np.float32)
+    node.image.pixels.foreach_get(pixels)
+    arrays = blender_mesh.read_mesh(target.data)
+    middles = blender_mesh.read_uv(target.data)[arrays.loops].mean(1)
+    found = part("baking").sampled(pixels.reshape(size, size, 4), middles)
+    at = arrays.vertices[arrays.triangles].mean(1)
+    wave = 0.5 + 0.5 * np.sin(np.arctan2(at[:, 1], at[:, 0]))
+    round_axis = np.hypot(at[:, 0], at[:, 1]) > 0.2
+    off_by = np.abs(np.column_stack([found[:, 0] - 0.5 - 0.25 * at[:, 2], found[:, 1] - wave]))[round_axis].max(1)
+    assert np.quantile(off_by, 0.95) < 0.02 and off_by.max() < 0.1, (np.quantile(off_by, 0.95), off_by.max())
+    assert source.data.materials[0].name == "Wavy" and len(source.data.materials) == 1
+    source.data.materials.clear()
+    assert "no image texture" in raises(bpy.ops.object.orbifold_transfer, texture=True, uv_maps=False, **off)
+
+
 def check_landmarks_that_do_not_correspond_are_warned_of():
     source, target, _ = pair(lambda: blob(4), FEW)
     others = [vertex for vertex, _ in picked(target)]

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The image that an object's material shows by a UV map, for transfers; a copy of that material with another one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional
+
+import bpy
+import numpy as np
+
+from . import blender_mesh, materials
+
+
+@dataclass(frozen=True)
+class Texture:
+    material: bpy.types.Material
+    node: str  # its name: that of the image texture
+    image: bpy.types.Image
+    uv_map: str
+
+    def pixels(self) -> np.ndarray:
+        """(h, w, 4) as they are kept, from below."""
+        width, height = self.image.size
+        values = np.empty(4 * width * height, np.float32)
+        self.image.pixels.foreach_get(values)
+        return values.reshape(height, width, 4)
+
+
+def find(obj: bpy.types.Object) -> Texture:
+    """Of the active material the active image texture, or the first. BlenderMeshError where there is none."""
+    material = obj.active_material
+    nodes = material.node_tree.nodes if material is not None and material.node_tree is not None else ()
+    pictures = [node for node in nodes if node.type == "TEX_IMAGE" and node.image is not None]
+    node = next((one for one in pictures if one == nodes.active), pictures[0] if pictures else None)
+    if node is None:
+        raise blender_mesh.BlenderMeshError(f"The active material of {obj.name} has no image texture to bake")
+    if node.image.source == "TILED" or not all(node.image.size) or node.image.channels != 4:
+        raise blender_mesh.BlenderMeshError(
+            f"The image {node.image.name} of {obj.name} cannot be read: it has to be one tile, and its file there"
+        )
+    uv_map = _uv_map(node, obj.data)
+    if uv_map is None:
+        raise blender_mesh.BlenderMeshError(f"{obj.name} has no UV map for its image texture")
+    return Texture(material, node.name, node.image, uv_map)
+
+
+def _uv_map(node: bpy.types.Node, mesh: bpy.types.Mesh) -> Optional[str]:
+    """That of the node which says where the image is looked up, else the one that is rendered."""
+    links = node.inputs["Vector"].links
+    named = getattr(links[0].from_node, "uv_map", "") if links else ""
+    if named in mesh.uv_layers:
+        return named
+    return next((layer.name for layer in mesh.uv_layers if layer.active_render), None)
+
+
+def write(obj: bpy.types.Object, texture: Texture, pixels: np.ndarray, uv_map: str) -> None:
+    """The object gets an image of its own, in a copy of the texture's material, on all faces."""
+    material_name = f"{texture.material.name} on {obj.name}"
+    earlier = bpy.data.materials.get(material_name)
+    material = texture.material.copy()
+    material.name = material_name
+    if earlier is not None:
+        earlier.user_remap(material)
+        bpy.data.materials.remove(earlier)
+        material.name = material_name
+    tree = material.node_tree
+    node = tree.nodes[texture.node]
+    node.image = _image(f"{texture.image.name} on {obj.name}", texture.image, pixels)
+    coordinates = tree.nodes.new("ShaderNodeUVMap")
+    coordinates.location = (node.location[0] - 200, node.location[1])
+    coordinates.uv_map = uv_map
+    tree.links.new(coordinates.outputs["UV"], node.inputs["Vector"])
+    materials.assign(obj, material)
+
+
+def _image(name: str, like: bpy.types.Image, pixels: np.ndarray) -> bpy.types.Image:
+    """Packed into the file; an earlier one of this name is replaced."""
+    image = bpy.data.images.get(name)
+    if image is not None:
+        bpy.data.images.remove(image)
+    height, width = pixels.shape[:2]
+    image = bpy.data.images.new(name, width, height, alpha=True, float_buffer=like.is_float)
+    image.colorspace_settings.name = like.colorspace_settings.name
+    image.alpha_mode = like.alpha_mode
+    image.pixels.foreach_set(np.ascontiguousarray(pixels, np.float32).ravel())
+    image.update()
+    image.pack()
+    return image
