@@ -11,6 +11,7 @@ from collections.abc import Callable
 import numpy as np
 
 MARGIN = 8  # texels around the faces that take the colours beside them: filtering reads across a border
+LARGEST = 4  # images that a triangle may reach across
 AT_ONCE = 2_000_000  # texels of bounding boxes that are held at a time
 
 Spots = tuple[np.ndarray, np.ndarray]  # (p,) triangles, -1 for none, and (p, 3) barycentric coordinates
@@ -35,11 +36,12 @@ def bake(
 
 
 def _boxes(uv: np.ndarray, width: int, height: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Corners in texels (m, 3, 2), whose centres are whole numbers; the first texel of each box and its size (m, 2)."""
+    """Corners in texels (m, 3, 2), whose centres are whole numbers; the first texel of each box and its size (m, 2).
+    Layouts may lie beyond the unit square, for images repeat."""
     points = uv * [width, height] - 0.5
-    low = np.maximum(np.ceil(points.min(1) - 1e-6), 0).astype(np.int64)
-    high = np.minimum(np.floor(points.max(1) + 1e-6), [width - 1, height - 1]).astype(np.int64)
-    return points, low, np.maximum(high - low + 1, 0)
+    low = np.ceil(points.min(1) - 1e-6).astype(np.int64)
+    size = np.maximum(np.floor(points.max(1) + 1e-6).astype(np.int64) - low + 1, 0)
+    return points, low, np.where((size > LARGEST * np.array([width, height])).any(1)[:, None], 0, size)
 
 
 def _portions(uv: np.ndarray, width: int, height: int) -> list[tuple[int, int]]:
@@ -68,7 +70,7 @@ def _texels(uv: np.ndarray, width: int, height: int) -> tuple[np.ndarray, np.nda
     barycentric = np.stack([1 - second - third, second, third], 1)
     inside = (barycentric >= -1e-6).all(1)  # not where it is no number
     barycentric = np.maximum(barycentric[inside], 0.0)
-    return (y * width + x)[inside], triangle[inside], barycentric / barycentric.sum(1, keepdims=True)
+    return (y % height * width + x % width)[inside], triangle[inside], barycentric / barycentric.sum(1, keepdims=True)
 
 
 def sampled(pixels: np.ndarray, uv: np.ndarray) -> np.ndarray:

@@ -67,6 +67,7 @@ def write(obj: bpy.types.Object, texture: Texture, pixels: np.ndarray, uv_map: s
     tree = material.node_tree
     node = tree.nodes[texture.node]
     node.image = _image(f"{texture.image.name} on {obj.name}", texture.image, pixels)
+    node.extension = "REPEAT"  # layouts may lie beyond the unit square
     coordinates = tree.nodes.new("ShaderNodeUVMap")
     coordinates.location = (node.location[0] - 200, node.location[1])
     coordinates.uv_map = uv_map

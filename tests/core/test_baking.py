@@ -28,6 +28,13 @@ def test_a_map_that_is_turned_turns_the_image():
     assert np.abs(found - np.rot90(pixels, -1)).max() < 1e-12  # rows go upwards
 
 
+def test_beyond_the_unit_square_the_image_repeats():
+    pixels = picture(24, 40)
+    found = bare("baking").bake(SQUARE + [0.25, -1.5], 40, 24, itself, SQUARE, pixels)
+    assert np.abs(found - np.roll(pixels, (12, 10), (0, 1))).max() < 1e-12
+    assert not bare("baking").bake(1e6 * SQUARE, 40, 24, itself, SQUARE, pixels).any()
+
+
 def test_only_a_margin_is_filled_around_a_small_island():
     baking = bare("baking")
     pixels = np.ones((16, 16, 4))
