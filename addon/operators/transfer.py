@@ -91,6 +91,8 @@ class OBJECT_OT_orbifold_transfer(JobOperator, bpy.types.Operator):
         if self._job is not None:
             return None
         self._work.write()
+        if any(len(outcome.crossing) for outcome in self._work.outcomes):  # they are selected
+            context.tool_settings.mesh_select_mode = (False, False, True)
         self.report({"WARNING" if self._work.warned else "INFO"}, self._work.message())
         return {"FINISHED"}
 
