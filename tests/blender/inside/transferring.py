@@ -242,6 +242,33 @@ def check_the_component_of_the_landmarks():
     assert blender_mesh.read_all_group_weights(target.data, 1)[len(place), 0] == 0.5
 
 
+def check_what_lies_in_a_hole_of_the_source_stays():
+    source, target, place = pair()
+    landmarks = [vertex for vertex, _ in picked(source)]
+    bm = bmesh.new()
+    bm.from_mesh(source.data)
+    bm.verts.ensure_lookup_table()
+    far = next(v for v in bm.verts if not {w.index for e in v.link_edges for w in e.verts} & set(landmarks))
+    gone = int(place[far.index])
+    bmesh.ops.delete(bm, geom=far.link_faces[:], context="FACES_ONLY")  # the vertex stays, loose
+    bm.to_mesh(source.data)
+    bm.free()
+    assert len(source.data.vertices) == len(place)
+    filled(source)
+    assert "Blob: the mesh is open" in raises(bpy.ops.object.orbifold_transfer)
+    source.data.orbifold.holes = "fill"
+    target.vertex_groups.new(name="All").add([gone], 0.125, "REPLACE")
+    bpy.ops.object.orbifold_transfer(form=True, form_back=True, shape_keys=True)
+    weights = blender_mesh.read_all_group_weights(target.data, 1)[:, 0]
+    around = {v for polygon in target.data.polygons if gone in polygon.vertices for v in polygon.vertices}
+    others = np.delete(weights, sorted(around))  # the hole is filled with other triangles than there were
+    assert weights[gone] == 0.125 and np.allclose(others, 1)
+    assert (at_vertices(target, "places")[gone] == 0).all()
+    form = blender_mesh.read_shape_key(target, "Form of Blob")
+    assert np.abs(form[gone] - positions(target)[gone]).max() < 1e-6 and np.isfinite(form).all()
+    assert np.isfinite(blender_mesh.read_uv(target.data, "Longitude")).all()
+
+
 def check_several_targets_and_the_heat_map():
     source, target, _ = pair()
     other, place = copy_of(source, "Other")
