@@ -11,8 +11,10 @@ import bpy
 import numpy as np
 
 sys.path.insert(0, os.path.dirname(__file__))
+import grids  # noqa: E402
 from harness import (  # noqa: E402
-    blob, digest, enable, far_vertices, module_name, part, picked, quad_blob, raises, run_checks, set_cones, user,
+    blob, digest, enable, far_vertices, mesh_object, module_name, part, picked, quad_blob, raises, run_checks,
+    set_cones, user,
 )
 
 enable()
@@ -180,14 +182,13 @@ def check_a_finer_mesh_gets_what_is_near():
     points = positions(target)
     assert np.abs(at_vertices(target, "places") - points).max() < 0.15
     wrong = np.abs(blender_mesh.read_uv(target.data, "Longitude") - longitude(target)).max(1)
-    faces = np.repeat(np.arange(len(target.data.polygons)), 3)
     selected = np.array([polygon.select for polygon in target.data.polygons])
     near_axis = np.hypot(*points[blender_mesh.read_loop_vertices(target.data)][:, :2].T) < 0.3
     assert np.median(wrong) < 0.02
     uv = blender_mesh.read_uv(target.data, "Longitude").reshape(-1, 3, 2)
     sound = ~near_axis.reshape(-1, 3).any(1)
     assert np.ptp(uv[sound, :, 0], axis=1).max() < 0.2, "no face is drawn over the whole map"
-    assert 0 < selected.sum() < 0.1 * len(selected) and len(faces) == len(wrong)
+    assert 0 < selected.sum() < 0.1 * len(selected)
 
 
 def check_forms_and_shape_keys():
@@ -518,10 +519,6 @@ def check_the_api():
 
 
 def check_a_disk_with_corners():
-    sys.path.insert(0, os.path.dirname(__file__))
-    import grids
-    from harness import mesh_object
-
     source = mesh_object(*grids.disk(n=16), "Disk")
     target, place = copy_of(source)
     border = np.flatnonzero(blender_mesh.boundary_vertices(source.data)).tolist()
