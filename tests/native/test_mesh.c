@@ -32,7 +32,6 @@ static void *counted_calloc(size_t count, size_t size) {
 #include "check.h"
 #include "meshes.h"
 
-#include <time.h>
 
 /* Makes the half-edges, checks that they fit the triangles and each other, and the counts; frees the sample. */
 static void check_mesh(sample_mesh sample, int32_t components, int32_t loops, int32_t genus) {
@@ -399,14 +398,8 @@ TEST(every_failed_allocation_is_reported) {
     mesh_free(NULL);
 }
 
-static double seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-/* Vertices of high degree, numbered to suit nobody: two poles and a belt. The time is that of n, not of n times the
- * degree. */
+/* Vertices of high degree, numbered to suit nobody: two poles and a belt. A step that takes n times the degree would
+ * be seen by the time limit of the whole program. */
 TEST(a_vertex_of_high_degree_costs_no_more) {
     enum { N = 200000, STEP = 77773 };
     sample_mesh sample = sample_new(N + 2, 2 * N);
@@ -415,9 +408,7 @@ TEST(a_vertex_of_high_degree_costs_no_more) {
         const int32_t two[6] = {a, b, N, b, a, N + 1};
         memcpy(sample.triangles + 6 * (size_t)i, two, sizeof two);
     }
-    const double start = seconds();
     check_mesh(sample, 1, 0, 0);
-    CHECK(seconds() - start < 20); /* a quadratic step takes minutes */
 }
 
 TEST(shared_meshes) {
