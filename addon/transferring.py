@@ -1,87 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Data of one object's mesh -> other objects', by surface maps: the jobs in turn (one for each mesh), then everything
 is computed, and at the end written at once. No operator, no context: operators/transfer.py polls the jobs, api.py
-waits for them. What is computed is in correspondence.py."""
+waits for them. What each target gets is computed in transfer_outcome.py."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass, field, replace
-from functools import partial
+from dataclasses import replace
 from typing import Optional
 
 import bpy
 import numpy as np
 
-from . import arrangement, baking, blender_mesh, cones, core, cut_paths, heat, layouts, textures
-from .correspondence import Correspondence, orbifold_for
-
-FORM = "Form of {}"  # shape keys
-MUCH = 2.0  # a map's mean angle distortion, and how many times as long as its own a mapped cut is: more is said
-
-
-@dataclass(frozen=True)
-class Wishes:
-    """What is transferred, and how the meshes are embedded."""
-
-    groups: bool = True
-    attributes: bool = True
-    colours: bool = True
-    uv_maps: bool = True
-    texture: bool = False  # the image of the source's material, to the targets' active UV maps
-    form: bool = False  # a shape key of each target: the source's form
-    form_back: bool = False  # a shape key of the source for each target: its form
-    shape_keys: bool = False
-    heat: bool = False
-    signature: str = ""  # empty: orbifold_for
-    weights: str = "conformal"
-    clamp: float = 0.01
-    holes: Optional[str] = None  # None: the choice that is kept with each mesh
-
-    @property
-    def any(self) -> bool:
-        ticked = (self.groups, self.attributes, self.colours, self.uv_maps, self.texture, self.form, self.form_back)
-        return any((*ticked, self.shape_keys, self.heat))
-
-
-@dataclass
-class Member:
-    """A mesh with its landmarks."""
-
-    obj: bpy.types.Object
-    arrays: blender_mesh.MeshArrays  # all vertices, the triangles of the landmarks' component
-    surface: core.Topology
-    landmarks: list[int]
-    holes: str
-    result: Optional[core.Result] = None
-
-    @property
-    def places(self) -> arrangement.Arrangement:
-        return arrangement.arrange(self.landmarks, self.surface, self.holes == "mirror")
-
-
-@dataclass
-class Outcome:
-    """What a target gets: the calls that write it, and what to say of it."""
-
-    target: Member
-    distortion: core.MapDistortion
-    landmark_residual: float
-    cut_ratio: float
-    writes: list[Callable[[], object]] = field(default_factory=list)
-    names: dict[str, list[str]] = field(default_factory=dict)  # of what is written, by kind
-    crossing: np.ndarray = field(default_factory=lambda: np.zeros(0, int))  # faces that a seam runs through
-    locked: list[str] = field(default_factory=list)  # vertex groups
-
-    @property
-    def strained(self) -> bool:
-        """As maps are whose landmarks do not correspond, or that are twisted."""
-        return max(self.distortion.quasi_conformal_mean, self.cut_ratio) > MUCH
-
-    def add(self, kind: str, name: str, write: Callable[[], object]) -> None:
-        self.names.setdefault(kind, []).append(name)
-        self.writes.append(write)
+from . import arrangement, blender_mesh, cones, core, cut_paths, heat, layouts, textures
+from .correspondence import orbifold_for
+from .transfer_outcome import Member, Outcome, Wishes, attributes_of, described, outcome_of, uv_maps_of
 
 
 def mismatch(counts: Sequence[tuple[str, int]]) -> Optional[str]:
@@ -184,41 +118,29 @@ class Transferring:
 
     def _check_names(self, source: bpy.types.Object, target: bpy.types.Object) -> None:
         """What is to be written can be."""
+        uv_maps = uv_maps_of(self.source, self.wishes)
         try:
-            for name, domain, kind in self._attributes():
+            for name, domain, kind in attributes_of(self.source, self.wishes):
                 blender_mesh.check_attribute(target.data, name, kind, domain)
             if self.wishes.heat:
                 heat.check(target.data, heat.MAP)
-            for name in self._uv_maps():
+            for name in uv_maps:
                 blender_mesh.check_uv_space(target.data, name)
         except blender_mesh.BlenderMeshError as error:
             raise blender_mesh.BlenderMeshError(f"{target.name}: {error}") from error
         own = target.data.uv_layers.active
         if self.wishes.texture and own is None:
             raise blender_mesh.BlenderMeshError(f"{target.name} has no UV map to bake to: unwrap it first")
-        if self.wishes.texture and own.name in self._uv_maps():
+        if self.wishes.texture and own.name in uv_maps:
             raise blender_mesh.BlenderMeshError(
                 f'The UV map "{own.name}" of {target.name} would be replaced by that of {source.name}, and is to be '
                 "baked to: do not tick UV Maps, or rename it"
             )
-        more = [name for name in self._uv_maps() if name not in target.data.uv_layers]
+        more = [name for name in uv_maps if name not in target.data.uv_layers]
         if len(target.data.uv_layers) + len(more) > blender_mesh.MAX_UV_MAPS:
             raise blender_mesh.BlenderMeshError(
                 f"{target.name} has no room for {len(more)} more UV maps: remove some, or those of {source.name}"
             )
-
-    def _attributes(self) -> list[tuple[str, str, str]]:
-        """(name, domain, type) of those of the source that are wanted, colours first; none of ours."""
-        mesh, ours = self.members[0].obj.data, {measure.colour for measure in heat.MEASURES}
-        found = sorted(blender_mesh.plain_attributes(mesh), key=lambda one: one[0] not in mesh.color_attributes)
-        return [
-            one for one in found
-            if not one[0].startswith("orbifold_") and one[0] not in ours
-            and (self.wishes.colours if one[0] in mesh.color_attributes else self.wishes.attributes)
-        ]
-
-    def _uv_maps(self) -> list[str]:
-        return [layer.name for layer in self.members[0].obj.data.uv_layers] if self.wishes.uv_maps else []
 
     # ----------------------------------------------------------------------------------------------- the jobs
 
@@ -251,103 +173,10 @@ class Transferring:
             for target in self.members[1:]:
                 self.at = target.obj
                 try:
-                    self.outcomes.append(self._computed(target))
+                    self.outcomes.append(outcome_of(self.source, target, self.wishes, self._texture))
                 except core.OrbifoldError as error:
                     raise _of(target, error) from error
         return None
-
-    # -------------------------------------------------------------------------------------------- what to write
-
-    def _computed(self, target: Member) -> Outcome:
-        to_source = core.SurfaceMap(target.result, self.source.result)
-        back = core.SurfaceMap(self.source.result, target.result)
-        work = Correspondence(self.source.arrays, target.arrays, to_source, back)
-        outcome = Outcome(target, to_source.distortion, to_source.landmark_residual, work.cut_ratio)
-        if self.wishes.groups:
-            self._add_groups(work, outcome)
-        self._add_attributes(work, outcome)
-        self._add_uv_maps(work, outcome)
-        if self._texture is not None:
-            self._add_texture(work, outcome)
-        self._add_forms(work, outcome)
-        if self.wishes.shape_keys:
-            self._add_shape_keys(work, outcome)
-        if self.wishes.heat:
-            ratio = np.log(np.maximum(outcome.distortion.quasi_conformal, 1.0))
-            values = heat.at_vertices(target.arrays, ratio)
-            outcome.add("heat map", heat.MAP.colour, lambda: heat.show(bpy.context, target.obj.data, heat.MAP, values))
-        return outcome
-
-    def _add_groups(self, work: Correspondence, outcome: Outcome) -> None:
-        source, target = self.source.obj, outcome.target.obj
-        if not len(source.vertex_groups):
-            return
-        weights = work.of_vertices(blender_mesh.read_all_group_weights(source.data, len(source.vertex_groups)))
-        for group in source.vertex_groups:
-            there = target.vertex_groups.get(group.name)
-            if there is not None and there.lock_weight:
-                outcome.locked.append(group.name)
-                continue
-            own = np.clip(weights[:, group.index], 0.0, 1.0)
-            own[own < 1e-6] = 0.0
-            outcome.add("vertex groups", group.name, partial(
-                _write_group, target, group.name, own, work.vertices.there, group.lock_weight
-            ))
-
-    def _add_attributes(self, work: Correspondence, outcome: Outcome) -> None:
-        source, mesh = self.source.obj.data, outcome.target.obj.data
-        for name, domain, kind in self._attributes():
-            values = blender_mesh.read_attribute(source, name)
-            of_vertices, exact = domain == "POINT", kind in ("INT", "BOOLEAN")
-            if of_vertices:
-                found = (work.nearest_of_vertices if exact else work.of_vertices)(values)
-            else:
-                found = (work.nearest_of_corners if exact else work.of_corners)(values)
-            among = (work.vertices if of_vertices else work.corners).there
-            outcome.add("colours" if name in source.color_attributes else "attributes", name, partial(
-                blender_mesh.write_attribute, mesh, name, domain, kind, found, among
-            ))
-
-    def _add_uv_maps(self, work: Correspondence, outcome: Outcome) -> None:
-        for name in self._uv_maps():
-            uv, crossing = work.of_uv(blender_mesh.read_uv(self.source.obj.data, name).astype(np.float64))
-            outcome.crossing = np.union1d(outcome.crossing, crossing).astype(int)
-            outcome.add("UV maps", name, partial(
-                blender_mesh.write_uv_of_loops, outcome.target.obj.data, uv, work.corners.there, name
-            ))
-
-    def _add_texture(self, work: Correspondence, outcome: Outcome) -> None:
-        texture, target = self._texture, outcome.target
-        own = target.obj.data.uv_layers.active.name
-        uv = blender_mesh.read_uv(target.obj.data, own).astype(np.float64)[target.arrays.loops]
-        from_uv = blender_mesh.read_uv(self.source.obj.data, texture.uv_map).astype(np.float64)
-        corners = from_uv[self.source.arrays.loops]
-        pixels = baking.bake(uv, *texture.image.size, work.map.evaluate, corners, texture.pixels())
-        outcome.add("images", texture.image.name, partial(textures.write, target.obj, texture, pixels, own))
-
-    def _add_forms(self, work: Correspondence, outcome: Outcome) -> None:
-        source, target = self.source, outcome.target
-        if self.wishes.form:
-            own = blender_mesh.read_vertices(target.obj.data)
-            form = np.where(np.isfinite(work.images), work.images, own)
-            self._add_key(outcome, target.obj, form, FORM.format(source.obj.name))
-        if self.wishes.form_back:
-            own, form = blender_mesh.read_vertices(source.obj.data), work.back.points()
-            self._add_key(outcome, source.obj, np.where(np.isfinite(form), form, own), FORM.format(target.obj.name))
-
-    def _add_shape_keys(self, work: Correspondence, outcome: Outcome) -> None:
-        keys = self.source.obj.data.shape_keys
-        if keys is None:
-            return
-        basis, own = work.source.vertices, blender_mesh.read_vertices(outcome.target.obj.data)
-        for key in keys.key_blocks:
-            if key == keys.reference_key or key.name == blender_mesh.SHAPE_KEY or key.name.startswith(FORM.format("")):
-                continue
-            moved = blender_mesh.read_shape_key(self.source.obj, key.name) - basis
-            self._add_key(outcome, outcome.target.obj, own + work.of_displacements(moved), key.name)
-
-    def _add_key(self, outcome: Outcome, obj: bpy.types.Object, positions: np.ndarray, name: str) -> None:
-        outcome.add("shape keys", name, partial(blender_mesh.write_shape_key, obj, positions, name))
 
     # ------------------------------------------------------------------------------------------------- writing
 
@@ -364,7 +193,7 @@ class Transferring:
                 _draw_paths(member)
 
     def message(self) -> str:
-        said = [f"{outcome.target.obj.name}: {_described(outcome)}" for outcome in self.outcomes]
+        said = [f"{outcome.target.obj.name}: {described(outcome)}" for outcome in self.outcomes]
         return f"From {self.source.obj.name} by {self.signature}. {' '.join(said)}"
 
     @property
@@ -398,27 +227,6 @@ class Transferring:
         }
 
 
-def _described(outcome: Outcome) -> str:
-    distortion = outcome.distortion
-    counts = [f"{len(names)} {kind}" if len(names) > 1 else f"1 {kind.rstrip('s')}"
-              for kind, names in outcome.names.items()]
-    text = (
-        f"{', '.join(counts) or 'nothing, as the source has none of what is ticked'}; "
-        f"mean angle distortion {distortion.quasi_conformal_mean:.3f}, area spread {distortion.log_area_std:.2f}, "
-        "a bijection."
-    )
-    if outcome.strained:
-        text += (
-            f" That is much, and the source's landmark paths become {outcome.cut_ratio:.1f} times as long as its own: "
-            "look whether the landmarks correspond, and whether another order of them mends a twist."
-        )
-    if len(outcome.crossing):
-        text += f" {len(outcome.crossing)} faces cross a seam of the source's UV maps: they are selected."
-    if outcome.locked:
-        text += f" Locked vertex groups stay: {', '.join(outcome.locked)}."
-    return text
-
-
 def _cones(obj: bpy.types.Object) -> list[int]:
     return [cone.vertex for cone in cones.read_cones(obj.data)]
 
@@ -428,16 +236,6 @@ def _object_modes(objects: Iterable[bpy.types.Object]) -> ExitStack:
     for obj in objects:
         stack.enter_context(blender_mesh.object_mode(obj))
     return stack
-
-
-def _write_group(
-    obj: bpy.types.Object, name: str, weights: np.ndarray, among: np.ndarray, locked: bool
-) -> None:
-    """A new group is locked where the source's is."""
-    there = name in obj.vertex_groups
-    blender_mesh.write_group_weights(obj, name, weights, among)
-    if not there:
-        obj.vertex_groups[name].lock_weight = locked
 
 
 def _draw_paths(member: Member) -> None:
