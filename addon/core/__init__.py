@@ -36,6 +36,7 @@ from .suggest import (
 )
 from .surface_map import MapDistortion, SurfaceMap, interpolated, landmark_sequence, surface_map
 from .topology import Topology, topology_of, vertex_components
+from .wallpaper import Wallpaper
 from .whole import WholeLayout, edge_keys, whole_layout
 
 __all__ = [
@@ -59,6 +60,7 @@ __all__ = [
     "SuggestionJob",
     "SurfaceMap",
     "Topology",
+    "Wallpaper",
     "WholeLayout",
     "describe",
     "edge_keys",
