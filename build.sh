@@ -4,6 +4,8 @@
 #   ./build.sh run  [MESH ...] [--jobs LIST] [--orbifold SIGNATURE] [--cones i,j,k | --cones auto] [--orders n,n,n]
 #                   [--weights conformal|cotan|delaunay|mean-value|mean-value-exact|uniform]
 #                   [--holes refuse|fill|mirror] [--output DIR] [--files ENDINGS] [--export] [--blender PATH]
+#   ./build.sh run  [MESH ...] [--cones i,j,k] --map-to MESH [--map-cones i,j,k] ... [--transfer WHAT,WHAT]
+#                                         what the one mesh has, on the other; options as above
 #   ./build.sh test [--blender PATH]      everything; ends with `N passed, N failed`
 #   ./build.sh test --all                 the same, and what is tested in Blender also in 4.3 and 5.2, in roots of other
 #                                         releases of Debian (build/roots/, made once: takes root and a network)

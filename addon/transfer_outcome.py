@@ -64,13 +64,17 @@ class Outcome:
     """What a target gets: the calls that write it, and what to say of it."""
 
     target: Member
-    distortion: core.MapDistortion
-    landmark_residual: float
+    map: core.SurfaceMap  # of the target onto the source
+    back: core.SurfaceMap  # of the source onto the target
     cut_ratio: float
     writes: list[Callable[[], object]] = field(default_factory=list)
     names: dict[str, list[str]] = field(default_factory=dict)  # of what is written, by kind
     crossing: np.ndarray = field(default_factory=lambda: np.zeros(0, int))  # faces that a seam runs through
     locked: list[str] = field(default_factory=list)  # vertex groups
+
+    @property
+    def distortion(self) -> core.MapDistortion:
+        return self.map.distortion
 
     @property
     def strained(self) -> bool:
@@ -102,7 +106,7 @@ def outcome_of(source: Member, target: Member, wishes: Wishes, texture: Optional
     to_source = core.SurfaceMap(target.result, source.result)
     back = core.SurfaceMap(source.result, target.result)
     work = Correspondence(source.arrays, target.arrays, to_source, back)
-    outcome = Outcome(target, to_source.distortion, to_source.landmark_residual, work.cut_ratio)
+    outcome = Outcome(target, to_source, back, work.cut_ratio)
     if wishes.groups:
         _add_groups(source, work, outcome)
     _add_attributes(source, attributes_of(source, wishes), work, outcome)

@@ -49,8 +49,9 @@ class Transferring:
 
     # --------------------------------------------------------------------------------- before the computation
 
-    def start(self) -> core.Job:
-        """Checks all, and gives the first job. Raises OrbifoldError and BlenderMeshError."""
+    def start(self, embedded: Optional[core.Result] = None) -> core.Job:
+        """Checks all, and gives the first job. `embedded`: the source, by an earlier transfer from it with the same
+        landmarks and wishes. Raises OrbifoldError and BlenderMeshError."""
         source, *targets = objects = self._objects
         if not self.wishes.any:
             raise blender_mesh.BlenderMeshError("Nothing is ticked that could be transferred")
@@ -69,6 +70,8 @@ class Transferring:
             for target in targets:
                 self.at = target
                 self._check_names(source, target)
+        if embedded is not None:
+            self.source.result, self._next = embedded, 1
         return self._embedding()
 
     def _check_targets(self, source: bpy.types.Object, targets: Sequence[bpy.types.Object]) -> None:
@@ -213,7 +216,7 @@ class Transferring:
                     "written": outcome.names,
                     "locked_groups": outcome.locked,
                     "crossing_faces": outcome.crossing.tolist(),
-                    "landmark_residual": outcome.landmark_residual,
+                    "landmark_residual": outcome.map.landmark_residual,
                     "cut_ratio": outcome.cut_ratio,
                     "flipped": outcome.distortion.flipped,
                     "bijective": True,  # both embeddings are certified
