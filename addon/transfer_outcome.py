@@ -33,6 +33,7 @@ class Wishes:
     form_back: bool = False  # a shape key of the source for each target: its form
     shape_keys: bool = False
     heat: bool = False
+    heat_area: bool = False
     signature: str = ""  # empty: orbifold_for
     weights: str = "conformal"
     clamp: float = 0.01
@@ -41,7 +42,13 @@ class Wishes:
     @property
     def any(self) -> bool:
         ticked = (self.groups, self.attributes, self.colours, self.uv_maps, self.texture, self.form, self.form_back)
-        return any((*ticked, self.shape_keys, self.heat))
+        return any((*ticked, self.shape_keys, *self.heat_maps))
+
+    @property
+    def heat_maps(self) -> list[heat.Measure]:
+        """The last one is shown."""
+        wanted = ((self.heat, heat.MAP), (self.heat_area, heat.MAP_AREA))
+        return [measure for ticked, measure in wanted if ticked]
 
 
 @dataclass
@@ -131,11 +138,22 @@ def outcome_of(
         _add_key(outcome, source.obj, np.where(np.isfinite(form), form, own), FORM.format(target.obj.name))
     if wishes.shape_keys:
         _add_shape_keys(source, work, outcome)
-    if wishes.heat:
-        ratio = np.log(np.maximum(outcome.distortion.quasi_conformal, 1.0))
-        values = heat.at_vertices(target.arrays, ratio)
-        outcome.add("heat map", heat.MAP.colour, lambda: heat.show(bpy.context, target.obj.data, heat.MAP, values))
+    for measure in wishes.heat_maps:
+        values = heat.at_vertices(target.arrays, _distortion(source, outcome, measure))
+        outcome.add("heat maps", measure.colour, partial(
+            heat.show, bpy.context, target.obj.data, measure, values
+        ))
     return outcome
+
+
+def _distortion(source: Member, outcome: Outcome, measure: heat.Measure) -> np.ndarray:
+    """(m,) of the target's triangles: the logarithm of the ratio of singular values, or that of the area there for the
+    area on the source, which is 0 for the meshes as a whole. 0 where the map has none."""
+    distortion = outcome.distortion
+    if measure == heat.MAP:
+        return np.log(np.maximum(distortion.quasi_conformal, 1.0))
+    whole = np.log(heat.areas_of(outcome.target.arrays).sum() / heat.areas_of(source.arrays).sum())
+    return np.where(distortion.quasi_conformal > 0, -distortion.log_area - whole, 0.0)
 
 
 def _add_groups(source: Member, work: Correspondence, outcome: Outcome) -> None:

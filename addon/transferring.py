@@ -126,8 +126,8 @@ class Transferring:
         try:
             for name, domain, kind in attributes_of(self.source, self.wishes):
                 blender_mesh.check_attribute(target.data, name, kind, domain)
-            if self.wishes.heat:
-                heat.check(target.data, heat.MAP)
+            for measure in self.wishes.heat_maps:
+                heat.check(target.data, measure)
             for name in uv_maps:
                 blender_mesh.check_uv_space(target.data, name)
         except blender_mesh.BlenderMeshError as error:

@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from .. import baking, core, faces, materials, pattern
+from ..steps import Steps
 from ..transfer_outcome import Member
 from .stage import Figure, aim_camera, facing, light, place_object, render, triangle_mesh, turns
 
@@ -22,7 +23,7 @@ def render_map(source: Member, target: Member, to_source: core.SurfaceMap, path:
     layouts = [faces.plain_layout(member.result) for member in (source, target)]
     own = pattern.image(source.result, layouts[0], materials.image_size(layouts[0]))
     size = materials.image_size(layouts[1])
-    baked = baking.bake(layouts[1].uv, size, size, to_source.evaluate, layouts[0].uv, own)
+    baked = Steps(baking.bake(layouts[1].uv, size, size, to_source.evaluate, layouts[0].uv, own)).finish()
     figures = [_figure(*one) for one in zip((source, target), layouts, (own, baked))]
     for figure, turn, x in zip(figures, _views(figures), (SOURCE_X, TARGET_X)):
         place_object(scene, figure, turns()[turn], x, WIDTH)

@@ -285,6 +285,39 @@ def check_several_targets_and_the_heat_map():
     assert bpy.ops.mesh.orbifold_hide_distortion() == {"FINISHED"} and "Orbifold Map" not in target.data.attributes
 
 
+def areas_about(obj, points):
+    """(n,) of all triangles around each vertex, where the vertices are at these points."""
+    triangles = blender_mesh.read_mesh(obj.data).triangles
+    p, q, r = points[triangles].transpose(1, 0, 2)
+    return np.bincount(triangles.ravel(), np.repeat(np.linalg.norm(np.cross(q - p, r - p), axis=1), 3))
+
+
+def check_the_heat_map_of_areas():
+    """Compared with the areas about the vertices, on the target and on the form that the map gives it."""
+    source, target, place = pair(lambda: blob(4), 5)
+    off = dict(groups=False, attributes=False, colours=False, uv_maps=False)
+    heat = part("heat")
+    for stretch in (3, [3, 3, 12]):
+        target.shape_key_clear()
+        moved = (positions(source) * stretch)[np.argsort(place)]
+        target.data.vertices.foreach_set("co", moved.astype(np.float32).ravel())
+        target.data.update()
+        bpy.ops.object.orbifold_transfer(heat=True, heat_area=True, form=True, **off)
+        assert {"Orbifold Map", "Orbifold Map Area"} <= {one.name for one in target.data.color_attributes}
+        assert heat.shown(target.data) is heat.MAP_AREA, "of both the last one is shown"
+        form = blender_mesh.read_shape_key(target, "Form of Blob")
+        areas = [areas_about(target, points) for points in (positions(target), form)]
+        known = np.log(areas[0] / areas[0].sum() * areas[1].sum() / areas[1])
+        found = at_vertices(target, "orbifold_map_area")[:, 0]
+        assert np.abs(found - known).max() < 0.2 * np.abs(known).max() + 1e-3, np.abs(found - known).max()
+        assert (np.abs(known).max() > 0.3) == (stretch != 3), np.abs(known).max()
+    bpy.ops.object.orbifold_transfer(heat=True, **off)
+    assert heat.shown(target.data) is heat.MAP and "Orbifold Map Area" in target.data.attributes
+    bpy.context.view_layer.objects.active = target
+    assert bpy.ops.mesh.orbifold_hide_distortion() == {"FINISHED"}
+    assert not {"Orbifold Map", "Orbifold Map Area", "orbifold_map_area"} & set(target.data.attributes.keys())
+
+
 def pictured(obj, size=256):
     """An object with a material that shows an image by its map Longitude: red is the height, green a wave."""
     y, x = (np.mgrid[0:size, 0:size] + 0.5) / size
