@@ -178,16 +178,24 @@ def _add_attributes(
 ) -> None:
     mesh, target = source.obj.data, outcome.target.obj.data
     for name, domain, kind in wanted:
-        values = blender_mesh.read_attribute(mesh, name)
-        of_vertices, exact = domain == "POINT", kind in ("INT", "BOOLEAN")
-        if of_vertices:
-            found = (work.nearest_of_vertices if exact else work.of_vertices)(values)
+        values, exact = blender_mesh.read_attribute(mesh, name), kind in ("INT", "BOOLEAN")
+        if domain == "POINT":
+            found, among = (work.nearest_of_vertices if exact else work.of_vertices)(values), work.vertices.there
+        elif domain == "CORNER":
+            found, among = (work.nearest_of_corners if exact else work.of_corners)(values), work.corners.there
         else:
-            found = (work.nearest_of_corners if exact else work.of_corners)(values)
-        among = (work.vertices if of_vertices else work.corners).there
+            found, among = _of_faces(values, work, len(target.polygons))
         outcome.add("colours" if name in mesh.color_attributes else "attributes", name, partial(
             blender_mesh.write_attribute, target, name, domain, kind, found, among
         ))
+
+
+def _of_faces(values: np.ndarray, work: Correspondence, n_faces: int) -> tuple[np.ndarray, np.ndarray]:
+    """(n_faces, width) of the target, and which of its faces have one."""
+    known, faces = work.of_faces(values)
+    found, among = np.zeros((n_faces, values.shape[1]), values.dtype), np.zeros(n_faces, bool)
+    found[faces], among[faces] = known, True
+    return found, among
 
 
 def _add_uv_map(source: Member, name: str, work: Correspondence, outcome: Outcome) -> None:

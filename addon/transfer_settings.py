@@ -13,8 +13,8 @@ GROUPS = dict(
 COLOURS = dict(name="Colours", default=True, description="Colour attributes, of vertices and of face corners")
 ATTRIBUTES = dict(
     name="Attributes", default=True,
-    description="All other attributes of vertices and face corners: numbers and vectors are interpolated, whole "
-    "numbers and booleans are those of the nearest vertex",
+    description="All other attributes of vertices, face corners and faces: numbers and vectors are interpolated, whole "
+    "numbers and booleans are those of the nearest vertex. A face gets what the source's face at its middle has",
 )
 UV_MAPS = dict(
     name="UV Maps", default=True,

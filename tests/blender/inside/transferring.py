@@ -162,6 +162,44 @@ def check_all_of_it_comes_over_to_the_same_surface():
         assert "orbifold_cone" in target.data.attributes and len(picked(target)) == count, "its own landmarks"
 
 
+def face_middles(obj):
+    middles = np.empty(3 * len(obj.data.polygons), np.float32)
+    obj.data.polygons.foreach_get("center", middles)
+    return middles.reshape(-1, 3)
+
+
+def check_attributes_of_faces():
+    """On the same surface, on a finer one, and of one component only; those of edges stay."""
+    off = dict(groups=False, colours=False, uv_maps=False)
+    kinds = {"middles": "FLOAT_VECTOR", "number": "INT", "upper": "BOOLEAN", "height": "FLOAT"}
+    for make, settings in ((blob, {}), (quad_blob, {}), (quad_blob, {"shuffled": False, "subdivided": True})):
+        source, target, _ = pair(make, 4, **settings)
+        middles, edges = face_middles(source), len(source.data.edges)
+        numbers = np.arange(len(middles))[:, None]
+        rows = {"middles": middles, "number": numbers, "upper": middles[:, 2:] > 0, "height": middles[:, 2:]}
+        for name, kind in kinds.items():
+            blender_mesh.write_attribute(source.data, name, "FACE", kind, rows[name], np.ones(len(middles), bool))
+        blender_mesh.write_attribute(source.data, "of edges", "EDGE", "INT", np.ones((edges, 1)), np.ones(edges, bool))
+        bm = bmesh.new()
+        bm.from_mesh(target.data)
+        bmesh.ops.create_icosphere(bm, subdivisions=1, radius=0.3)  # of 20 faces
+        n_faces = len(bm.faces)
+        bm.to_mesh(target.data)
+        bm.free()
+        own = face_middles(target)[: n_faces - 20]
+        _, said = reported(bpy.ops.object.orbifold_transfer, **off)
+        assert "Copy: 4 attributes; mean" in said, said
+        found = {name: at_vertices(target, name) for name in kinds}
+        assert all(target.data.attributes[name].domain == "FACE" for name in kinds) and len(found["upper"]) == n_faces
+        known = np.linalg.norm(middles[:, None] - own, axis=2).argmin(0)
+        right = found["number"][: len(own), 0] == known
+        assert right.all() if not settings else right.mean() > 0.9, right.mean()
+        for name in kinds:
+            expected = rows[name][found["number"][: len(own), 0]]
+            assert (found[name][: len(own)] == expected).all() and not found[name][len(own):].any(), name
+        assert "of edges" not in target.data.attributes
+
+
 def check_only_what_is_ticked():
     source, target, _ = pair()
     filled(source)
