@@ -40,7 +40,11 @@ ANGLE = Measure(
     tuple((float(np.log(factor)), f"{factor:g}") for factor in (1, 1.05, 1.15, 1.3, 1.6)),
 )
 MAP = Measure("Angle distortion of the map", "orbifold_map", "Orbifold Map", ANGLE.gain, ANGLE.ticks)
-MAP_AREA = Measure("Area factor of the map", "orbifold_map_area", "Orbifold Map Area", AREA.gain, AREA.ticks)
+MAP_AREA = Measure(
+    *("Area factor of the map", "orbifold_map_area", "Orbifold Map Area", 2.0),
+    tuple((float(np.log(factor)), text)
+          for factor, text in ((0.25, "1/4"), (0.5, "1/2"), (1, "1"), (2, "2"), (4, "4"))),
+)
 MEASURES = (STRETCH, AREA, ANGLE, MAP, MAP_AREA)
 
 

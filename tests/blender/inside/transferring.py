@@ -548,11 +548,17 @@ def check_equal_places_have_equal_colours():
     overlay = part("overlay")
 
     def colours(obj):
-        return overlay._cone_colours(obj.data, tuple(picked(obj)))
+        (compared, hues) = overlay._compared([source, target])
+        assert compared == [source, target]
+        return overlay._cone_colours(obj.data, tuple(picked(obj)), hues)
 
     assert np.allclose(colours(source), colours(target))
     set_cones(source, "2" * FEW, [vertex for vertex, _ in picked(source)][::-1])
     assert np.allclose(colours(source), colours(target)), "those of the list, not of an earlier layout"
+    set_cones(target, "2" * 4, [vertex for vertex, _ in picked(target)][:4])
+    assert np.allclose(colours(source)[:4], colours(target)), "also while some are missing"
+    target.select_set(False)
+    assert overlay._compared([source, target]) == ([], 0)
 
 
 def check_the_api():
