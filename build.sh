@@ -14,7 +14,7 @@
 #   ./build.sh package [--blender PATH]   build/orbifold_uv-VERSION.zip, to install in Blender, and build/repository/,
 #                                         an extension repository that Blender 4.2 and later can subscribe to
 #   ./build.sh bench [ROUNDS [MESHES]]    seconds of each stage on several meshes
-#   ./build.sh docs [--blender PATH]      the pictures of docs/orbifolds.md, rendered
+#   ./build.sh docs [--blender PATH]      the pictures of docs/orbifolds.md and docs/batch.md, rendered
 #   ./build.sh docs window [NAME...]      the pictures of Blender's window, of a real one on a virtual screen
 #   ./build.sh docs cones                 the tables of docs/cones.md, measured (an hour)
 #   ./build.sh deps                       install what all of these need, and nothing else

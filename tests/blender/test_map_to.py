@@ -96,7 +96,7 @@ def test_a_batch_with_a_failure_in_the_middle(pair: tuple, tmp_path: Path) -> No
     row = next(row for row in table(done) if row.startswith("pear.obj to same.off"))
     assert row.split()[3:10] == ["2222", "0", "100", "250", "361", "0", "1.000"]
     written = json.loads((tmp_path / "out" / "same.json").read_text())["targets"][0]["written"]
-    assert set(written) == {"UV maps", "heat map"}
+    assert set(written) == {"UV maps", "heat maps"}
     with np.load(tmp_path / "out" / "same.npz") as file:  # the source's embedding is that of the first job
         assert np.abs(mapped(dict(file), "target", "source") - file["target_vertices"]).max() < 1e-6
 
