@@ -180,8 +180,8 @@ def transfer(
         )
     wishes = Wishes(
         groups=groups, colours=colours, attributes=attributes, uv_maps=uv_maps, texture=texture, form=form,
-        form_back=form_back, shape_keys=shape_keys, heat=heat, heat_area=heat_area, signature=signature, weights=weights,
-        clamp=clamp, holes=holes,
+        form_back=form_back, shape_keys=shape_keys, heat=heat, heat_area=heat_area, signature=signature,
+        weights=weights, clamp=clamp, holes=holes,
     )
     with _expected(source, *chosen):
         work = Transferring(source, chosen, wishes, landmarks)

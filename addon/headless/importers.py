@@ -28,7 +28,7 @@ ReadMesh = Callable[[Path], tuple[np.ndarray, np.ndarray]]
 def load_object(
     path: Path, object_name: Optional[str], read_mesh: ReadMesh, option: str = "--object"
 ) -> bpy.types.Object:
-    """The mesh object of the file, alone in an empty scene. `read_mesh` is core.read_mesh, `option` what names an object
+    """The mesh object of the file, alone in an empty scene. `read_mesh` is core.read_mesh, `option` what would name it
     on the command line."""
     if not path.is_file():
         raise RunError(f"{path}: there is no such file")

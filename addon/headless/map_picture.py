@@ -35,11 +35,13 @@ def render_map(source: Member, target: Member, to_source: core.SurfaceMap, path:
 def _figure(member: Member, layout: faces.FaceLayout, pixels: np.ndarray) -> Figure:
     """With a mesh of its own, of the triangles that take part."""
     material = materials.image_material(f"Orbifold Map {member.obj.name}", pixels, layout.chart)
-    mesh = triangle_mesh(member.arrays.vertices, member.arrays.triangles, layout.uv, material)
+    used, triangles = np.unique(member.arrays.triangles, return_inverse=True)
+    vertices, cones = member.arrays.vertices[used], np.searchsorted(used, member.result.cones)
+    mesh = triangle_mesh(vertices, triangles.reshape(-1, 3), layout.uv, material)
     obj = bpy.data.objects.new("Orbifold Map", mesh)
     obj.matrix_world = member.obj.matrix_world
-    colours = pattern.palette(max(len(member.result.cones), pattern.LEAST_CENTRES)) ** 2.2
-    return Figure(obj, member.arrays.vertices, member.result.cones, colours, material)
+    colours = pattern.palette(max(len(cones), pattern.LEAST_CENTRES)) ** 2.2
+    return Figure(obj, vertices, cones, colours, material)
 
 
 def _views(figures: list[Figure]) -> tuple[int, int]:

@@ -12,7 +12,7 @@ from typing import Iterator, Sequence
 
 import bpy
 import numpy as np
-from mathutils import Matrix, Vector
+from mathutils import Matrix
 
 from .. import blender_mesh
 from .clip import clip_to_disk
