@@ -34,7 +34,7 @@ from .suggest import (
     suggest_cones,
     worth_trying,
 )
-from .surface_map import MapDistortion, SurfaceMap, interpolated, landmark_sequence, surface_map
+from .surface_map import MapDistortion, SurfaceMap, Trace, interpolated, landmark_sequence, surface_map
 from .topology import Topology, topology_of, vertex_components
 from .whole import WholeLayout, edge_keys, whole_layout
 
@@ -58,6 +58,7 @@ __all__ = [
     "Suggestion",
     "SuggestionJob",
     "SurfaceMap",
+    "Trace",
     "Topology",
     "WholeLayout",
     "describe",
