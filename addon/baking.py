@@ -6,13 +6,15 @@ source's image. So neither mesh's seams can be seen, and no vertex is asked for 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 
 import numpy as np
 
+from .steps import Step
+
 MARGIN = 8  # texels around the faces that take the colours beside them: filtering reads across a border
 LARGEST = 4  # images that a triangle may reach across
-AT_ONCE = 2_000_000  # texels of bounding boxes that are held at a time
+AT_ONCE = 500_000  # texels of bounding boxes that are held at a time
 
 Spots = tuple[np.ndarray, np.ndarray]  # (p,) triangles, -1 for none, and (p, 3) barycentric coordinates
 
@@ -20,12 +22,14 @@ Spots = tuple[np.ndarray, np.ndarray]  # (p,) triangles, -1 for none, and (p, 3)
 def bake(
     target_uv: np.ndarray, width: int, height: int, on_source: Callable[[np.ndarray, np.ndarray], Spots],
     source_uv: np.ndarray, pixels: np.ndarray,
-) -> np.ndarray:
+) -> Generator[Step, None, np.ndarray]:
     """(height, width, 4) by the UV map (m, 3, 2) of the target's triangles: what `pixels` (h, w, 4) has by the
-    `source_uv` (m', 3, 2) where `on_source` maps the points of the target to. Without alpha where there is nothing."""
+    `source_uv` (m', 3, 2) where `on_source` maps the points of the target to. Without alpha where there is nothing.
+    A step for each portion of the triangles."""
     image = np.zeros((height * width, 4))
     covered = np.zeros(height * width, bool)
     for first, last in _portions(target_uv, width, height):
+        yield "image", first / len(target_uv)
         texels, triangles, barycentric = _texels(target_uv[first:last], width, height)
         at, where = on_source(triangles + first, barycentric)
         known = at >= 0

@@ -4,7 +4,7 @@ arrays are those of correspondence.py."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Optional
@@ -14,6 +14,7 @@ import numpy as np
 
 from . import arrangement, baking, blender_mesh, core, heat, textures
 from .correspondence import Correspondence
+from .steps import Step, part_of
 
 FORM = "Form of {}"  # shape keys
 MUCH = 2.0  # a map's mean angle distortion, and how many times as long as its own a mapped cut is: more is said
@@ -97,18 +98,26 @@ def uv_maps_of(source: Member, wishes: Wishes) -> list[str]:
     return [layer.name for layer in source.obj.data.uv_layers] if wishes.uv_maps else []
 
 
-def outcome_of(source: Member, target: Member, wishes: Wishes, texture: Optional[textures.Texture]) -> Outcome:
+def outcome_of(
+    source: Member, target: Member, wishes: Wishes, texture: Optional[textures.Texture]
+) -> Generator[Step, None, Outcome]:
     """Both are embedded. Raises OrbifoldError."""
+    yield "map", 0.0
     to_source = core.SurfaceMap(target.result, source.result)
     back = core.SurfaceMap(source.result, target.result)
     work = Correspondence(source.arrays, target.arrays, to_source, back)
     outcome = Outcome(target, to_source.distortion, to_source.landmark_residual, work.cut_ratio)
     if wishes.groups:
+        yield "groups", 0.1
         _add_groups(source, work, outcome)
+    yield "attributes", 0.2
     _add_attributes(source, attributes_of(source, wishes), work, outcome)
-    _add_uv_maps(source, uv_maps_of(source, wishes), work, outcome)
+    for name in uv_maps_of(source, wishes):
+        yield "UV maps", 0.3
+        _add_uv_map(source, name, work, outcome)
     if texture is not None:
-        _add_texture(source, texture, work, outcome)
+        yield from part_of(0.4, 0.9, _add_texture(source, texture, work, outcome))
+    yield "forms", 0.9
     if wishes.form:
         own = blender_mesh.read_vertices(target.obj.data)
         form = np.where(np.isfinite(work.images), work.images, own)
@@ -159,22 +168,23 @@ def _add_attributes(
         ))
 
 
-def _add_uv_maps(source: Member, names: list[str], work: Correspondence, outcome: Outcome) -> None:
-    for name in names:
-        uv, crossing = work.of_uv(blender_mesh.read_uv(source.obj.data, name).astype(np.float64))
-        outcome.crossing = np.union1d(outcome.crossing, crossing).astype(int)
-        outcome.add("UV maps", name, partial(
-            blender_mesh.write_uv_of_loops, outcome.target.obj.data, uv, work.corners.there, name
-        ))
+def _add_uv_map(source: Member, name: str, work: Correspondence, outcome: Outcome) -> None:
+    uv, crossing = work.of_uv(blender_mesh.read_uv(source.obj.data, name).astype(np.float64))
+    outcome.crossing = np.union1d(outcome.crossing, crossing).astype(int)
+    outcome.add("UV maps", name, partial(
+        blender_mesh.write_uv_of_loops, outcome.target.obj.data, uv, work.corners.there, name
+    ))
 
 
-def _add_texture(source: Member, texture: textures.Texture, work: Correspondence, outcome: Outcome) -> None:
+def _add_texture(
+    source: Member, texture: textures.Texture, work: Correspondence, outcome: Outcome
+) -> Generator[Step, None, None]:
     target = outcome.target
     own = target.obj.data.uv_layers.active.name
     uv = blender_mesh.read_uv(target.obj.data, own).astype(np.float64)[target.arrays.loops]
     from_uv = blender_mesh.read_uv(source.obj.data, texture.uv_map).astype(np.float64)
     corners = from_uv[source.arrays.loops]
-    pixels = baking.bake(uv, *texture.image.size, work.map.evaluate, corners, texture.pixels())
+    pixels = yield from baking.bake(uv, *texture.image.size, work.map.evaluate, corners, texture.pixels())
     outcome.add("images", texture.image.name, partial(textures.write, target.obj, texture, pixels, own))
 
 

@@ -1,20 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Data of one object's mesh -> other objects', by surface maps: the jobs in turn (one for each mesh), then everything
-is computed, and at the end written at once. No operator, no context: operators/transfer.py polls the jobs, api.py
-waits for them. What each target gets is computed in transfer_outcome.py."""
+"""Data of one object's mesh -> other objects', by surface maps: the jobs in turn (one for each mesh, and one in which
+everything is computed), and at the end all is written at once. No operator, no context: operators/transfer.py polls the
+jobs, api.py waits for them. What each target gets is computed in transfer_outcome.py."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Generator, Iterable, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
-from typing import Optional
+from typing import Optional, Union
 
 import bpy
 import numpy as np
 
 from . import arrangement, blender_mesh, cones, core, cut_paths, heat, layouts, textures
 from .correspondence import orbifold_for
+from .steps import Step, Steps, part_of
 from .transfer_outcome import Member, Outcome, Wishes, attributes_of, described, outcome_of, uv_maps_of
 
 
@@ -159,8 +160,11 @@ class Transferring:
         except core.OrbifoldError as error:
             raise _of(member, error) from error
 
-    def proceed(self, job: core.Job) -> Optional[core.Job]:
+    def proceed(self, job: Union[core.Job, Steps]) -> Union[core.Job, Steps, None]:
         """The job is over: the next one, or None where there is only to write."""
+        if isinstance(job, Steps):
+            self.outcomes = job.finish()
+            return None
         member = self.members[self._next]
         try:
             member.result = job.finish()
@@ -169,14 +173,20 @@ class Transferring:
         self._next += 1
         if self._next < len(self.members):
             return self._embedding()
+        return Steps(self._computing())
+
+    def _computing(self) -> Generator[Step, None, list[Outcome]]:
+        outcomes, targets = [], self.members[1:]
         with _object_modes([member.obj for member in self.members]):
-            for target in self.members[1:]:
+            for number, target in enumerate(targets):
                 self.at = target.obj
                 try:
-                    self.outcomes.append(outcome_of(self.source, target, self.wishes, self._texture))
+                    steps = outcome_of(self.source, target, self.wishes, self._texture)
+                    own = yield from part_of(number / len(targets), (number + 1) / len(targets), steps)
+                    outcomes.append(own)
                 except core.OrbifoldError as error:
                     raise _of(target, error) from error
-        return None
+        return outcomes
 
     # ------------------------------------------------------------------------------------------------- writing
 

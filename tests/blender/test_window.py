@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """In a real window, on a virtual screen: a new user's clicks and keys from the zip to a file that is opened again
-(inside/new_user.py); F3 (inside/searching_window.py); suggestions (inside/suggesting_window.py); what is drawn, and
-Orbifold Live by keys (inside/seeing_window.py). Judged by what the scripts write; needs xvfb and imagemagick.
+(inside/new_user.py); F3 (inside/searching_window.py); suggestions (inside/suggesting_window.py); a transfer
+(inside/transferring_window.py); what is drawn, and Orbifold Live by keys (inside/seeing_window.py). Judged by what the
+scripts write; needs xvfb and imagemagick.
 
     ORBIFOLD_SCREENSHOTS    a folder for pictures of the screen"""
 
@@ -30,6 +31,11 @@ def used(tmp_path_factory: pytest.TempPathFactory) -> dict:
 @pytest.fixture(scope="module")
 def suggested(home: Home) -> dict:
     return in_window(home, "suggesting_window.py")
+
+
+@pytest.fixture(scope="module")
+def transferred(home: Home) -> dict:
+    return in_window(home, "transferring_window.py")
 
 
 @pytest.fixture(scope="module")
@@ -116,6 +122,17 @@ def test_one_click_suggests_and_unwraps_in_one_step(suggested: dict) -> None:
 def test_escape_ends_suggesting(suggested: dict) -> None:
     assert suggested["invoked_suggest_large"] == ["RUNNING_MODAL"]
     assert suggested["rows_after_esc"] == 0
+
+
+def test_a_transfer_is_modal_and_one_undo_step(transferred: dict) -> None:
+    assert transferred["invoked"] == ["RUNNING_MODAL"]
+    assert transferred["groups_after_one_undo"] == 0
+
+
+def test_escape_ends_a_transfer_between_two_portions_of_an_image(transferred: dict) -> None:
+    assert transferred["invoked_texture"] == ["RUNNING_MODAL"]
+    assert transferred["portions_before_esc"] >= 1 and transferred["portions_after_esc"] == 0
+    assert transferred["groups_after_esc"] == 0 and transferred["images_after_esc"] == ["Large"]
 
 
 def test_cones_and_cut_are_drawn_and_can_be_switched_off(shown: dict) -> None:
