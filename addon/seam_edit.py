@@ -89,14 +89,17 @@ def _write_pieces(
         if piece.polygon in several:
             face = _new_face(bm, old, [vertices[vertex] for vertex in piece.vertices])
             corners = {number[loop.vert]: loop for loop in old.loops}
-            for loop in face.loops:
+            within = [vertex for vertex in piece.vertices if vertex not in corners]
+            around = {vertex: triangles[cut.triangles[vertex - n_old]].tolist() for vertex in within}
+            for loop in face.loops[:]:
                 vertex = number[loop.vert]
-                if vertex in corners:
-                    loop.copy_from(corners[vertex])
-                else:
-                    k = vertex - n_old
-                    around = [corners[corner] for corner in triangles[cut.triangles[k]].tolist()]
-                    mixed.write(loop, around, cut.barycentric[k].tolist())
+                heaviest = cut.barycentric[vertex - n_old].argmax() if vertex in around else 0
+                loop.copy_from(corners[around[vertex][heaviest] if vertex in around else vertex])
+            for loop in face.loops:  # asked for anew: Blender takes those that were copied to for removed
+                vertex = number[loop.vert]
+                if vertex in around:
+                    weights = cut.barycentric[vertex - n_old].tolist()
+                    mixed.write(loop, [corners[corner] for corner in around[vertex]], weights)
         row = {vertex: start + k for k, vertex in enumerate(piece.vertices)}
         start += len(row)
         for loop in face.loops if piece.polygon not in uncut else ():
@@ -119,7 +122,7 @@ def _new_face(bm: bmesh.types.BMesh, old: bmesh.types.BMFace, vertices: list) ->
 
 
 class _Mixed:
-    """What corners have between others. Whole numbers and the like are those of the nearest."""
+    """What corners have between others, if it can be between."""
 
     def __init__(self, bm: bmesh.types.BMesh) -> None:
         there = bm.loops.layers
@@ -128,7 +131,6 @@ class _Mixed:
         self._uv = there.uv.values()
 
     def write(self, loop: bmesh.types.BMLoop, corners: list, weights: list[float]) -> None:
-        loop.copy_from(corners[weights.index(max(weights))])
         for layer in self._values:
             loop[layer] = _sum([corner[layer] for corner in corners], weights)
         for layer in self._uv:

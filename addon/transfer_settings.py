@@ -59,7 +59,8 @@ NAMES = (
 def draw(layout: bpy.types.UILayout, settings: bpy.types.bpy_struct, name: str) -> None:
     """One of NAMES, grey where it has no effect."""
     row = layout.row()
-    row.enabled = name != "cut_seams" or settings.uv_maps
+    if name == "cut_seams":
+        row.enabled = settings.uv_maps
     row.prop(settings, name)
 
 
