@@ -161,8 +161,8 @@ def transfer(
 ) -> dict:
     """What the source's mesh has -> the targets' meshes, by maps that are one to one and take landmarks to landmarks.
     The report: `source`, `signature`, `geometry`, and `targets`, for each `object`, `written` (names, by kind),
-    `crossing_faces` (that a seam of the source's UV maps runs through), `cut_faces` and `cut_pieces` (how many were cut,
-    and into how many), `locked_groups`, `distortion`, `flipped`,
+    `crossing_faces` (that a seam of the source's UV maps runs through), `cut_faces` (how many were cut), `cut_pieces`
+    (into how many), `locked_groups`, `distortion`, `flipped`,
     `landmark_residual`, `bijective`, and `cut_ratio`: how many times as long as its own the source's landmark paths
     become. Where one target fails nothing is written to any.
 
@@ -180,7 +180,8 @@ def transfer(
             "for each, that of the source first"
         )
     wishes = Wishes(
-        groups=groups, colours=colours, attributes=attributes, uv_maps=uv_maps, cut_seams=cut_seams, texture=texture, form=form,
+        groups=groups, colours=colours, attributes=attributes, uv_maps=uv_maps, cut_seams=cut_seams,
+        texture=texture, form=form,
         form_back=form_back, shape_keys=shape_keys, heat=heat, signature=signature, weights=weights, clamp=clamp,
         holes=holes,
     )

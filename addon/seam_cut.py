@@ -9,6 +9,7 @@ the side that its piece is on: exactly, however fine the pieces are.
 
 from __future__ import annotations
 
+from collections.abc import Generator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Optional
@@ -17,9 +18,11 @@ import numpy as np
 
 from . import core, planar
 from .correspondence import Correspondence, Spots, torn_edges
+from .steps import Step
 
 SNAP = 1e-6  # what is so near a corner or a side of a triangle, in barycentric coordinates, is on it
 BESIDE = 1e-5  # how far beside a seam a corner that only touches it is looked up, in the size of its piece
+STEP = 1000  # faces
 PROBE = 0.01  # how far beside its edge a stretch's side is looked up, in the stretch's length
 
 
@@ -56,16 +59,19 @@ class SeamCut:
         return int(counts[counts > 1].sum())
 
 
-def cut_along(work: Correspondence, uv_maps: list[np.ndarray]) -> SeamCut:
+def cut_along(work: Correspondence, uv_maps: list[np.ndarray]) -> Generator[Step, None, SeamCut]:
     """Where any of these UV maps (loops, 2) of the source is torn. Raises OrbifoldError."""
+    yield "seams", 0.0
     torn = [torn_edges(work.source.triangles, uv[work.source.loops]) for uv in uv_maps]
     torn = np.unique(np.concatenate([np.zeros((0, 2), int), *torn]), axis=0)
-    return _Cutting(work, torn, work.back.trace(torn[:, 0])).result()
+    cutting = _Cutting(work, torn, work.back.trace(torn[:, 0]))
+    yield from cutting.faces()
+    return cutting.result()
 
 
 @dataclass(frozen=True)
 class _Seam:
-    """A part of a torn edge between two nodes, the lower one first, that is straight in a triangle or along its side."""
+    """A part of a torn edge between two nodes, the lower one first; straight in a triangle or along its side."""
 
     triangle: int
     edge: int
@@ -190,7 +196,26 @@ class _Cutting:
 
     # ------------------------------------------------------------------------------------------------- pieces
 
-    def result(self) -> SeamCut:
+    def faces(self) -> Generator[Step, None, None]:
+        """Cuts all that are touched."""
+        self._rows: list[tuple[int, list[float]]] = []  # of all pieces' corners: a triangle and weights of the source,
+        self._asked: list[int] = []  # or of the target, for these rows
+        self._pieces: list[Piece] = []
+        self._crossing: list[int] = []
+        groups = self._touched()
+        for number, group in enumerate(groups):
+            if number % STEP == 0:
+                yield "seams", number / len(groups)
+            pieces, whole = self._faces(group.tolist())
+            polygon = int(self.target.polygons[group[0]])
+            if not whole:
+                self._crossing.append(polygon)
+            for piece in pieces:
+                self._pieces.append(Piece(polygon, [node for node, _ in piece]))
+                self._locate(piece)
+
+    def _touched(self) -> list[np.ndarray]:
+        """The triangles of each face that a seam runs through or touches."""
         met = np.zeros(self.n + len(self.triangles), bool)
         met[self.nodes] = True
         touched = met[self.target.triangles].any(1)
@@ -198,29 +223,21 @@ class _Cutting:
         ends = np.sort(np.stack([self.target.triangles, np.roll(self.target.triangles, -1, 1)], 2), axis=2)
         sides = np.array([low * self.n + high for low, high in self.on_side], np.int64)
         touched |= np.isin(ends[:, :, 0].astype(np.int64) * self.n + ends[:, :, 1], sides).any(1)
-        polygons = np.unique(self.target.polygons[touched])
-        order = np.flatnonzero(np.isin(self.target.polygons, polygons))
-        order = order[np.argsort(self.target.polygons[order], kind="stable")]
-        groups = np.split(order, np.flatnonzero(np.diff(self.target.polygons[order])) + 1) if len(order) else []
-        self._rows: list[tuple[int, list[float]]] = []  # of all pieces' corners: a triangle and weights of the source,
-        self._asked: list[int] = []  # or of the target, for these rows
-        pieces, crossing = [], []
-        for group in groups:
-            faces, whole = self._faces(group.tolist())
-            polygon = int(self.target.polygons[group[0]])
-            if not whole:
-                crossing.append(polygon)
-            for face in faces:
-                pieces.append(Piece(polygon, [node for node, _ in face]))
-                self._locate(face)
+        of = self.target.polygons
+        order = np.flatnonzero(np.isin(of, of[touched]))
+        order = order[np.argsort(of[order], kind="stable")]
+        return np.split(order, np.flatnonzero(np.diff(of[order])) + 1) if len(order) else []
+
+    def result(self) -> SeamCut:
+        """After `faces`."""
         drawn = {
-            tuple(sorted(edge)) for piece in pieces
+            tuple(sorted(edge)) for piece in self._pieces
             for edge in zip(piece.vertices, [*piece.vertices[1:], piece.vertices[0]])
         }
         seams = np.array([key for key in self.seams if key in drawn], np.int64).reshape(-1, 2)
         return SeamCut(
-            *(self.triangles, self.barycentric, self.side_ends, self.factors, pieces, self._spots(), seams),
-            np.array(crossing, int),
+            *(self.triangles, self.barycentric, self.side_ends, self.factors, self._pieces, self._spots(), seams),
+            np.array(self._crossing, int),
         )
 
     def _faces(self, triangles: list[int]) -> tuple[list[list[tuple[int, tuple]]], bool]:

@@ -16,13 +16,13 @@ def check(obj: bpy.types.Object) -> None:
     """Raises BlenderMeshError where the faces of an object must not be cut."""
     if obj.data.users - obj.data.use_fake_user > 1:
         raise blender_mesh.BlenderMeshError(
-            f"Cutting faces would change other objects that share the mesh of {obj.name}: make it single-user (Object > "
-            "Relations), or do not tick Cut Faces at Seams"
+            f"Cutting faces would change other objects that share the mesh of {obj.name}: make it single-user "
+            "(Object > Relations), or do not tick Cut Faces at Seams"
         )
     if any(modifier.type == "MULTIRES" for modifier in obj.modifiers):
         raise blender_mesh.BlenderMeshError(
-            f"{obj.name} has a Multiresolution modifier, whose sculpted levels would be lost by cutting faces: apply it, "
-            "or do not tick Cut Faces at Seams"
+            f"{obj.name} has a Multiresolution modifier, whose sculpted levels would be lost by cutting faces: apply "
+            "it, or do not tick Cut Faces at Seams"
         )
 
 
@@ -48,17 +48,15 @@ def apply(mesh: bpy.types.Mesh, triangles: np.ndarray, cut: SeamCut, uv_maps: di
 def _add_vertices(bm: bmesh.types.BMesh, vertices: list, triangles: np.ndarray, cut: SeamCut) -> None:
     """Appends them. Where one is on an edge, that is split, in all faces that have it."""
     ours = [layer for name, layer in bm.verts.layers.int.items() if name.startswith("orbifold_")]
-    rest: dict[tuple[int, int], tuple] = {}  # of an edge that was split: its last vertex, and where that is
-    for k, ends in enumerate(map(tuple, cut.ends.tolist())):
-        last, at = rest.get(ends, (vertices[ends[0]], 0.0))
-        edge = bm.edges.get((last, vertices[ends[1]])) if ends[0] >= 0 else None
-        corners = [vertices[vertex] for vertex in triangles[cut.triangles[k]].tolist()]
-        weights = cut.barycentric[k].tolist()
+    split: dict[tuple[int, int], tuple] = {}  # edges: the last new vertex on them, and where that is
+    for k, (first, second) in enumerate(cut.ends.tolist()):
+        corners, weights = [vertices[v] for v in triangles[cut.triangles[k]].tolist()], cut.barycentric[k].tolist()
         place = _sum([corner.co for corner in corners], weights)
+        last, at = split.get((first, second), (vertices[first], 0.0))
+        edge = bm.edges.get((last, vertices[second])) if first >= 0 else None
         if edge is not None:
-            factor = float(cut.factors[k])
-            new = bmesh.utils.edge_split(edge, last, (factor - at) / (1 - at))[1]
-            rest[ends] = new, factor
+            new = bmesh.utils.edge_split(edge, last, (cut.factors[k] - at) / (1 - at))[1]
+            split[first, second] = new, cut.factors[k]
         else:
             new = _between(bm, corners, weights)
         new.co = place
@@ -80,26 +78,14 @@ def _write_pieces(
     bm: bmesh.types.BMesh, vertices: list, triangles: np.ndarray, cut: SeamCut, uv_maps: dict[str, np.ndarray]
 ) -> None:
     old_faces, number = bm.faces[:], {vertex: k for k, vertex in enumerate(vertices)}
-    n_old = len(vertices) - len(cut.triangles)
     layers = [(bm.loops.layers.uv[name], values.tolist()) for name, values in uv_maps.items()]
-    mixed, several, start = _Mixed(bm), _several(cut), 0
+    corners, several, start = _Corners(bm, number, triangles, cut), _several(cut), 0
     uncut = set(cut.crossing.tolist())
     for piece in cut.pieces:
-        face = old = old_faces[piece.polygon]
+        face = old_faces[piece.polygon]
         if piece.polygon in several:
-            face = _new_face(bm, old, [vertices[vertex] for vertex in piece.vertices])
-            corners = {number[loop.vert]: loop for loop in old.loops}
-            within = [vertex for vertex in piece.vertices if vertex not in corners]
-            around = {vertex: triangles[cut.triangles[vertex - n_old]].tolist() for vertex in within}
-            for loop in face.loops[:]:
-                vertex = number[loop.vert]
-                heaviest = cut.barycentric[vertex - n_old].argmax() if vertex in around else 0
-                loop.copy_from(corners[around[vertex][heaviest] if vertex in around else vertex])
-            for loop in face.loops:  # asked for anew: Blender takes those that were copied to for removed
-                vertex = number[loop.vert]
-                if vertex in around:
-                    weights = cut.barycentric[vertex - n_old].tolist()
-                    mixed.write(loop, [corners[corner] for corner in around[vertex]], weights)
+            face = _new_face(bm, face, [vertices[vertex] for vertex in piece.vertices])
+            corners.write(face, old_faces[piece.polygon])
         row = {vertex: start + k for k, vertex in enumerate(piece.vertices)}
         start += len(row)
         for loop in face.loops if piece.polygon not in uncut else ():
@@ -121,16 +107,35 @@ def _new_face(bm: bmesh.types.BMesh, old: bmesh.types.BMFace, vertices: list) ->
     return face
 
 
-class _Mixed:
-    """What corners have between others, if it can be between."""
+class _Corners:
+    """What a piece's corners have from its face's: what these have, and within the face what is between, if it can be."""
 
-    def __init__(self, bm: bmesh.types.BMesh) -> None:
+    def __init__(self, bm: bmesh.types.BMesh, number: dict, triangles: np.ndarray, cut: SeamCut) -> None:
         there = bm.loops.layers
         kinds = (getattr(there, kind, None) for kind in ("float", "float_vector", "float_color", "color"))
         self._values = [layer for kind in kinds if kind is not None for layer in kind.values()]
         self._uv = there.uv.values()
+        self._number, first = number, len(number) - len(cut.triangles)  # of vertices
+        self._around = {  # of new vertices: the triangle's, and weights
+            first + k: (corners, weights)
+            for k, (corners, weights) in enumerate(zip(triangles[cut.triangles].tolist(), cut.barycentric.tolist()))
+        }
 
-    def write(self, loop: bmesh.types.BMLoop, corners: list, weights: list[float]) -> None:
+    def write(self, face: bmesh.types.BMFace, old: bmesh.types.BMFace) -> None:
+        own = {self._number[loop.vert]: loop for loop in old.loops}
+        for loop in face.loops[:]:
+            vertex = self._number[loop.vert]
+            if vertex not in own:
+                around, weights = self._around[vertex]
+                vertex = around[weights.index(max(weights))]
+            loop.copy_from(own[vertex])
+        for loop in face.loops:  # asked for anew: Blender takes those that were copied to for removed
+            vertex = self._number[loop.vert]
+            if vertex not in own:
+                around, weights = self._around[vertex]
+                self._mix(loop, [own[corner] for corner in around], weights)
+
+    def _mix(self, loop: bmesh.types.BMLoop, corners: list, weights: list[float]) -> None:
         for layer in self._values:
             loop[layer] = _sum([corner[layer] for corner in corners], weights)
         for layer in self._uv:

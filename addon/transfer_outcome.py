@@ -123,8 +123,8 @@ def outcome_of(
     _add_attributes(source, attributes_of(source, wishes), work, outcome)
     names = uv_maps_of(source, wishes)
     if wishes.cut_seams and names:
-        yield "seams", 0.25
-        outcome.cut = cut_along(work, [blender_mesh.read_uv(source.obj.data, name).astype(float) for name in names])
+        own = [blender_mesh.read_uv(source.obj.data, name).astype(np.float64) for name in names]
+        outcome.cut = yield from part_of(0.2, 0.3, cut_along(work, own))
     for name in names:
         yield "UV maps", 0.3
         _add_uv_map(source, name, work, outcome)
@@ -249,7 +249,7 @@ def described(outcome: Outcome) -> str:
             "look whether the landmarks correspond, and whether another order of them mends a twist."
         )
     if outcome.cut is not None and outcome.cut.cut_faces:
-        text += f" {outcome.cut.cut_faces} faces were cut into {outcome.cut.cut_pieces} at seams of the source's UV maps."
+        text += f" {outcome.cut.cut_faces} faces were cut into {outcome.cut.cut_pieces} at the source's seams."
     if len(outcome.crossing):
         text += f" {len(outcome.crossing)} faces cross a seam of the source's UV maps: they are selected."
     if outcome.locked:

@@ -52,7 +52,8 @@ SIGNATURE = dict(
     "333 for three landmarks, 2222 for four in the plane, and cones of order 2 in the hyperbolic plane for more",
 )
 NAMES = (
-    "groups", "colours", "attributes", "uv_maps", "cut_seams", "texture", "form", "form_back", "shape_keys", "heat", "signature",
+    "groups", "colours", "attributes", "uv_maps", "cut_seams", "texture", "form", "form_back", "shape_keys", "heat",
+    "signature",
 )
 
 

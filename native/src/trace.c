@@ -1,7 +1,7 @@
 /* Edges of one mesh -> their courses over another. SPDX-License-Identifier: GPL-3.0-or-later
  *
- * An edge is a geodesic of the tile's geometry, so that in each triangle of the target it is straight in geometry_locate's
- * weights. It is followed from its middle, which is never at a cone, to both ends, from one place of the target to the
+ * An edge is a geodesic of the tile's geometry, so that in each triangle of the target it is straight in the weights of
+ * geometry_locate. It is followed from its middle, which is never at a cone, to both ends, from one place of the target to the
  * next: through the inside of a triangle to a side or a corner, or along a side to a corner. A corner within the
  * tolerance of the geodesic is on it, so that what is left to the sides is clear on both sides of each. Ends are where
  * the overlay has the source's vertices. */
@@ -242,7 +242,7 @@ static orb_status follow(way *w, orb_sheet sheet, const double weight[3], bool *
     return ORB_OK;
 }
 
-/* Where the geodesic touches what the place is in, and leaves neither by a side nor by a corner ahead: to the corner. */
+/* Where the geodesic touches what the place is in, and leaves by no side and no corner ahead: to the corner. */
 static orb_status touch(way *w, orb_sheet sheet, const double weight[3], bool *moved, orb_error *error) {
     view v;
     look(w, sheet, &v);

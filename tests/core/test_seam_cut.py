@@ -59,7 +59,7 @@ def between(coarse, fine, together, angle=0.1):
 
 
 def cut(work, *uv_maps):
-    return bare("seam_cut").cut_along(work, list(uv_maps))
+    return bare("steps").Steps(bare("seam_cut").cut_along(work, list(uv_maps))).finish()
 
 
 def vertices_of(work, made):
