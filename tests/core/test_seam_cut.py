@@ -5,9 +5,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+import picks
 import pytest
+from conway import features
+from families import cases, mesh_named
 from meshes import far_apart, icosphere
-from surfaces import bare
+from surfaces import bare, picks_for
 from test_correspondence import islands, longitude
 
 import core
@@ -51,11 +54,14 @@ def between(coarse, fine, together, angle=0.1):
     picked = far_apart(*source, 5)
     picked = picked[core.landmark_sequence(*source, picked)]
     landmarks = [int(((target[0] - source[0][v]) ** 2).sum(1).argmin()) for v in picked]
-    results = [core.embed(*mesh, "22222", places, weights="conformal", cut="path")
+    return work_of(source, target, "22222", picked, landmarks, together)
+
+
+def work_of(source, target, signature, picked, landmarks, together=1):
+    results = [core.embed(*mesh, signature, places, weights="conformal", cut="path")
                for mesh, places in ((source, picked), (target, landmarks))]
     there, back = core.SurfaceMap(results[1], results[0]), core.SurfaceMap(results[0], results[1])
-    arrays = [arrays_of(source), arrays_of(target, together)]
-    return bare("correspondence").Correspondence(*arrays, there, back)
+    return bare("correspondence").Correspondence(arrays_of(source), arrays_of(target, together), there, back)
 
 
 def cut(work, *uv_maps):
@@ -104,6 +110,55 @@ def random_seams(mesh, seed):
 
 
 CASES = [(3, 4, 1), (3, 4, 2), (3, 3, 4), (4, 2, 1), (4, 2, 4), (3, 1, 2)]
+
+
+def pieces_apart(mesh):
+    """(loops, 2): each triangle an island."""
+    at = mesh[0][mesh[1]]
+    return (at[:, :, :2] + 10 * np.arange(len(at))[:, None, None]).reshape(-1, 2)
+
+
+@pytest.mark.parametrize("coarse, fine, together", CASES)
+def test_a_map_that_is_torn_everywhere(coarse, fine, together):
+    work, source = between(coarse, fine, together), icosphere(coarse)
+    uv = pieces_apart(source)
+    made = cut(work, uv)
+    pieces, whole = faces_of(work, made)
+    is_one_closed_surface(pieces + whole)
+    assert not len(made.crossing)
+    found = made.corners.mixed(uv[work.source.loops])
+    starts = np.cumsum([0, *map(len, pieces)])
+    assert max(np.ptp(found[a:b, 0]) for a, b in zip(starts, starts[1:])) < 2.5
+
+
+@pytest.mark.parametrize("signature", ["o", "*442", "22*", "**"])
+def test_other_surfaces_keep_their_topology(signature):
+    (_, name), (_, other) = cases([signature])
+    topology = features(signature).topology
+    source, target = mesh_named(topology, name), mesh_named(topology, other)
+    landmarks = picks.picks_for(*target, features(signature), start=0.6)
+    work = work_of(source, target, signature, picks_for(source, signature), landmarks)
+    made = cut(work, pieces_apart(source))
+    pieces, whole = faces_of(work, made)
+    before, after = (core.topology_of(triangulated(faces)) for faces in (target[1].tolist(), pieces + whole))
+    assert (after.genus, len(after.loops), after.orientable) == (before.genus, len(before.loops), before.orientable)
+    assert not len(made.crossing) and after.components == 1
+
+
+def triangulated(faces):
+    return np.array([(face[0], *side) for face in faces for side in zip(face[1:], face[2:])])
+
+
+def test_several_uv_maps_are_cut_together():
+    work, source = between(3, 4, 2), icosphere(3)
+    maps = [random_seams(source, seed) for seed in (7, 8)]
+    made = cut(work, *maps)
+    pieces, whole = faces_of(work, made)
+    is_one_closed_surface(pieces + whole)
+    starts = np.cumsum([0, *map(len, pieces)])
+    for uv in maps:
+        found = made.corners.mixed(uv[work.source.loops])
+        assert max(np.ptp(found[a:b, 0]) for a, b in zip(starts, starts[1:])) < 2.5
 
 
 def polygons_of(made):
