@@ -36,6 +36,7 @@ from .suggest import (
 )
 from .surface_map import MapDistortion, SurfaceMap, Trace, interpolated, landmark_sequence, surface_map
 from .topology import Topology, topology_of, vertex_components
+from .wallpaper import Wallpaper
 from .whole import WholeLayout, edge_keys, whole_layout
 
 __all__ = [
@@ -60,6 +61,7 @@ __all__ = [
     "SurfaceMap",
     "Trace",
     "Topology",
+    "Wallpaper",
     "WholeLayout",
     "describe",
     "edge_keys",

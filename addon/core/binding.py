@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""native/include/orbifold.h, orbifold_cones.h and orbifold_maps.h, declared for Python. Nothing else uses ctypes.
+"""native/include/orbifold.h, orbifold_cones.h, orbifold_maps.h and orbifold_images.h, declared for Python. Nothing else
+uses ctypes.
 
 `library()` loads it from this folder at the first call. Names and the sequence of fields are the
 headers'; tests/core/test_binding.py compares them with what a C compiler makes of them."""
@@ -11,7 +12,7 @@ import functools
 import sys
 import weakref
 from collections.abc import Sequence
-from ctypes import POINTER, Structure, c_bool, c_char, c_char_p, c_double, c_int, c_int32, c_int64, c_void_p
+from ctypes import POINTER, Structure, c_bool, c_char, c_char_p, c_double, c_int, c_int32, c_int64, c_uint16, c_void_p
 from pathlib import Path
 
 import numpy as np
@@ -39,6 +40,8 @@ HOLES = {"refuse": 0, "fill": 1, "mirror": 2}
 CUTS = {"automatic": 0, "path": 1}
 SYMMETRIES = {"detect": 0, "ignore": 1}
 SYMMETRY_PLANE = 2
+SOURCES = {"tile": 0, "all": 1, "painted": 2}
+TEXELS = {"uint8": 0, "uint16": 1, "float32": 2}
 CHARTS = {
     "default": 0,
     "periodic": 1,
@@ -224,9 +227,20 @@ class MapDistortion(Structure):
     ]
 
 
+class Image(Structure):  # orb_image
+    _fields_ = [
+        ("width", c_int32), ("height", c_int32), ("channels", c_int32), ("texel", c_int), ("pixels", c_void_p),
+    ]
+
+
+class WallpaperView(Structure):  # orb_wallpaper_view
+    _fields_ = [("order", c_int32), ("exact", c_bool), ("motions", DOUBLES), ("to_tile", POINTER(c_uint16))]
+
+
 EMBEDDING = c_void_p  # orb_embedding *
 SUGGESTIONS = c_void_p  # orb_suggestions *
 TRACE = c_void_p  # orb_trace *
+WALLPAPER = c_void_p  # orb_wallpaper *
 JOB = c_void_p  # orb_job *
 PREPARED = c_void_p  # orb_prepared *
 
@@ -271,6 +285,15 @@ PROTOTYPES = {
     "orb_trace_free": (None, [TRACE]),
     "orb_trace_count": (c_int64, [TRACE]),
     "orb_trace_read": (None, [TRACE, c_void_p]),
+    "orb_wallpaper_create": (
+        c_int,
+        [c_int32, c_int32, c_int32, DOUBLES, c_int32, DOUBLES, c_int32, POINTER(WALLPAPER), POINTER(Error)],
+    ),
+    "orb_wallpaper_free": (None, [WALLPAPER]),
+    "orb_wallpaper_look": (WallpaperView, [WALLPAPER]),
+    "orb_wallpaper_apply": (
+        c_int, [WALLPAPER, POINTER(Image), c_int, c_void_p, INT32S, c_int32, POINTER(Error)],
+    ),
     "orb_landmark_sequence": (c_int, [POINTER(MeshArrays), c_int32, INT32S, INT32S, INT32S, POINTER(Error)]),
 }
 
@@ -445,6 +468,29 @@ class Embedding:
         finally:
             native.orb_trace_free(pointer)
         return stretches
+
+
+class Wallpaper:
+    """An orb_wallpaper, freed with this object."""
+
+    def __init__(self, width: int, height: int, motions: np.ndarray, uv: np.ndarray, threads: int) -> None:
+        """Motions (n, 6); uv (m, 6), which may be empty."""
+        native, self._pointer, record = library(), WALLPAPER(), Error()
+        made = native.orb_wallpaper_create(
+            width, height, len(motions), doubles(motions), len(uv), doubles(uv), threads, self._pointer, record
+        )
+        check(made, record)
+        weakref.finalize(self, native.orb_wallpaper_free, self._pointer)
+        self.view: WallpaperView = native.orb_wallpaper_look(self._pointer)
+
+    def apply(
+        self, pixels: np.ndarray, source: int, painted: np.ndarray | None, area: np.ndarray | None, threads: int
+    ) -> None:
+        """orb_wallpaper_apply on contiguous (h, w, channels), in place; painted (h, w) uint8, area (4,) int32."""
+        height, width, channels = pixels.shape
+        image, record = Image(width, height, channels, TEXELS[pixels.dtype.name], pixels.ctypes.data), Error()
+        mask = None if painted is None else painted.ctypes.data
+        check(library().orb_wallpaper_apply(self._pointer, image, source, mask, int32s(area), threads, record), record)
 
 
 class Prepared:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""binding.py says what the three headers say: a C compiler and the linker are asked."""
+"""binding.py says what the headers say: a C compiler and the linker are asked."""
 
 import re
 import shutil
@@ -12,9 +12,9 @@ import core
 from core import binding
 
 HEADER = CHECKOUT / "native" / "include" / "orbifold.h"
-CONES_HEADER, MAPS_HEADER = HEADER.with_name("orbifold_cones.h"), HEADER.with_name("orbifold_maps.h")  # these include it
+OTHERS = [HEADER.with_name(f"orbifold_{name}.h") for name in ("cones", "maps", "images")]  # these include it
 HEADERS = "".join(
-    re.sub(r"/\*.*?\*/", "", path.read_text(), flags=re.DOTALL) for path in (HEADER, CONES_HEADER, MAPS_HEADER)
+    re.sub(r"/\*.*?\*/", "", path.read_text(), flags=re.DOTALL) for path in (HEADER, *OTHERS)
 )  # without comments
 STRUCTURES = {
     "orb_error": binding.Error,
@@ -29,6 +29,8 @@ STRUCTURES = {
     "orb_map_report": binding.MapReport,
     "orb_map_distortion": binding.MapDistortion,
     "orb_stretch": binding.Stretch,
+    "orb_image": binding.Image,
+    "orb_wallpaper_view": binding.WallpaperView,
 }
 CONSTANTS = {
     "ORB_OK": binding.OK,
@@ -46,6 +48,10 @@ CONSTANTS = {
     **{f"ORB_SYMMETRY_{name.upper()}": number for name, number in binding.SYMMETRIES.items()},
     **{f"ORB_CUT_{name.upper()}": number for name, number in binding.CUTS.items()},
     **{f"ORB_HOLES_{name.upper()}": number for name, number in binding.HOLES.items()},
+    "ORB_TEXEL_UINT8": binding.TEXELS["uint8"],
+    "ORB_TEXEL_UINT16": binding.TEXELS["uint16"],
+    "ORB_TEXEL_FLOAT": binding.TEXELS["float32"],
+    **{f"ORB_FROM_{name.upper()}": number for name, number in binding.SOURCES.items()},
     **{f"ORB_CHART_{name.upper()}": number for name, number in binding.CHARTS.items()},
 }
 
@@ -57,8 +63,9 @@ def ask_compiler(folder, expressions):
         pytest.skip("no C compiler")
     lines = "\n".join(f'printf("%ld\\n", (long)({expression}));' for expression in expressions)
     source = folder / "ask.c"
+    headers = "".join(f'#include "{path}"\n' for path in OTHERS)
     source.write_text(
-        f'#include <stddef.h>\n#include <stdio.h>\n#include "{CONES_HEADER}"\n#include "{MAPS_HEADER}"\n'
+        f"#include <stddef.h>\n#include <stdio.h>\n{headers}"
         f"int main(void) {{\n{lines}\nreturn 0; }}\n"
     )
     subprocess.run([compiler, "-std=c11", "-o", folder / "ask", source], check=True)
@@ -93,7 +100,7 @@ def test_structures_have_every_field_of_the_headers():
 def test_constants_are_the_headers(tmp_path):
     theirs = ask_compiler(tmp_path, CONSTANTS)
     assert dict(zip(CONSTANTS, theirs)) == CONSTANTS
-    for prefix in ("ORB_CHART_", "ORB_HOLES_", "ORB_SYMMETRY_"):
+    for prefix in ("ORB_CHART_", "ORB_HOLES_", "ORB_SYMMETRY_", "ORB_FROM_", "ORB_TEXEL_"):
         theirs = set(re.findall(rf"\b{prefix}\w+", HEADERS))
         assert theirs == {name for name in CONSTANTS if name.startswith(prefix)}
 

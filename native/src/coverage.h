@@ -1,0 +1,11 @@
+/* Texels whose middles lie in triangles. SPDX-License-Identifier: GPL-3.0-or-later */
+#ifndef ORB_COVERAGE_H
+#define ORB_COVERAGE_H
+
+#include <stdint.h>
+
+/* Sets covered[height][width] to 1 there; the image repeats. uv [n_triangles*6]; triangles that reach over more than a
+ * few periods, or are no numbers, are left out. */
+void coverage_mark(int32_t width, int32_t height, int32_t n_triangles, const double *uv, uint8_t *covered);
+
+#endif
