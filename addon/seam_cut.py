@@ -185,9 +185,8 @@ class _Cutting:
         corner, long = self.torn[self.edges, 0], np.ptp(self.at, axis=1)
         middle, beside = self.at.mean(1), PROBE * long
         weights, rows = np.zeros((len(corner), 3)), np.arange(len(corner))
-        weights[rows, corner % 3], weights[rows, (corner + 1) % 3] = (1 - middle) * (1 - beside), (
-            middle * (1 - beside)
-        )
+        weights[rows, corner % 3] = (1 - middle) * (1 - beside)
+        weights[rows, (corner + 1) % 3] = middle * (1 - beside)
         weights[rows, (corner + 2) % 3] = beside
         there, where = self.work.back.evaluate(corner // 3, weights)
         left = np.sign(np.linalg.det(np.stack([self.ends[:, 0], self.ends[:, 1], where], 1)))

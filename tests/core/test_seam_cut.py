@@ -182,6 +182,33 @@ def test_no_face_is_across_a_seam(coarse, fine, together, kind):
     assert np.ptp(left_alone[:, :, 0], axis=1).max(initial=0.0) < 2.5
 
 
+def area_by_island(corners, islands, triangles):
+    """Signed UV areas of triangles of corners (c, 2)."""
+    a, b, c = corners[triangles].swapaxes(0, 1)
+    return np.bincount(islands[triangles[:, 0]], np.cross(b - a, c - a) / 2)
+
+
+@pytest.mark.parametrize("coarse, fine, together", CASES)
+def test_islands_have_the_area_that_they_had(coarse, fine, together):
+    """They are bounded by the source's seams, to the last digits but for what is snapped, whatever is within."""
+    work, source = between(coarse, fine, together), icosphere(coarse)
+    uv = random_seams(source, 9)
+    made = cut(work, uv)
+    alone = ~np.isin(work.target.polygons, polygons_of(made))
+    pieces = triangulated_places([piece.vertices for piece in made.pieces])
+    corners = np.concatenate([made.corners.mixed(uv[work.source.loops]), work.of_corners(uv)])
+    triangles = np.concatenate([pieces, len(made.corners.triangles) + work.target.loops[alone]])
+    islands = np.rint(corners[:, 0] / 10).astype(int)
+    own = area_by_island(uv, np.rint(uv[:, 0] / 10).astype(int), work.source.loops)
+    assert np.abs(area_by_island(corners, islands, triangles) - own).max() < 2e-5 and (own != 0).sum() > 4
+
+
+def triangulated_places(faces):
+    """(t, 3) of the corners of faces, which are counted one face after the other."""
+    starts = np.cumsum([0, *map(len, faces)])
+    return triangulated([list(range(a, b)) for a, b in zip(starts, starts[1:])])
+
+
 @pytest.mark.parametrize("fine, together", [(4, 1), (3, 4)])
 def test_both_sides_of_a_seam_meet_where_it_is(fine, together):
     """One island, both sides of whose seam are one line on the sphere."""
@@ -259,3 +286,25 @@ def test_no_seam_no_cut():
     work = between(3, 4, 2)
     made = cut(work, work.source.vertices[work.source.triangles].reshape(-1, 3)[:, :2])
     assert not made.pieces and len(made.triangles) == len(made.seams) == len(made.corners.triangles) == 0
+
+
+def test_a_face_that_cannot_be_cut_is_left_and_said(monkeypatch):
+    """Its neighbours' new vertices are on its edges all the same."""
+    work = between(3, 3, 2)
+    uv = random_seams(icosphere(3), 1)
+    wanted = cut(work, uv)
+    monkeypatch.setattr(bare("planar"), "faces_of", lambda *_: None)
+    made = cut(work, uv)
+    pieces, whole = faces_of(work, made)
+    directed = {side for face in pieces + whole for side in zip(face, face[1:] + face[:1])}
+    assert {side[::-1] for side in directed} == directed
+    assert len(made.crossing) >= wanted.cut_faces and not set(made.crossing) - set(polygons_of(wanted))
+
+
+def test_segments_that_cross_are_no_arrangement():
+    planar = bare("planar")
+    points = planar.whole(np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [0.5, 0.5, 0], [0, 0.5, 0.5], [0.5, 0, 0.5]]))
+    border = [0, 3, 1, 4, 2, 5]
+    assert planar.faces_of(points, border, [(0, 4), (1, 5)]) is None
+    faces, added = planar.faces_of(points, border, [(3, 4), (4, 5)])
+    assert sorted(map(sorted, faces)) == [[0, 3, 4, 5], [1, 3, 4], [2, 4, 5]] and not added

@@ -113,6 +113,17 @@ def check_islands_meet_at_the_cut_and_it_is_a_seam():
     assert np.abs(apart - 10).max() < 1e-4, "both sides are at one place of the source"
 
 
+def check_islands_have_the_area_that_they_had():
+    source, target = pair()
+    api.transfer(source, target, cut_seams=True, **OFF)
+    areas = []
+    for obj in (source, target):
+        arrays, uv = blender_mesh.read_mesh(obj.data), blender_mesh.read_uv(obj.data, UV).astype(float)
+        a, b, c = uv[arrays.loops].swapaxes(0, 1)
+        areas.append(np.bincount((a[:, 1] > 5).astype(int), np.cross(b - a, c - a) / 2))
+    assert np.abs(areas[0] - areas[1]).max() < 1e-5 and np.abs(areas[0]).min() > 0.1, areas
+
+
 def check_everything_else_survives():
     source, target = pair()
     rich(target)
