@@ -4,6 +4,8 @@
 #   ./build.sh run  [MESH ...] [--jobs LIST] [--orbifold SIGNATURE] [--cones i,j,k | --cones auto] [--orders n,n,n]
 #                   [--weights conformal|cotan|delaunay|mean-value|mean-value-exact|uniform]
 #                   [--holes refuse|fill|mirror] [--output DIR] [--files ENDINGS] [--export] [--blender PATH]
+#   ./build.sh run  [MESH ...] [--cones i,j,k] --map-to MESH [--map-cones i,j,k] ... [--transfer WHAT,WHAT]
+#                                         what the one mesh has, on the other; options as above
 #   ./build.sh test [--blender PATH]      everything; ends with `N passed, N failed`
 #   ./build.sh test --all                 the same, and what is tested in Blender also in 4.3 and 5.2, in roots of other
 #                                         releases of Debian (build/roots/, made once: takes root and a network)
@@ -12,7 +14,7 @@
 #   ./build.sh package [--blender PATH]   build/orbifold_uv-VERSION.zip, to install in Blender, and build/repository/,
 #                                         an extension repository that Blender 4.2 and later can subscribe to
 #   ./build.sh bench [ROUNDS [MESHES]]    seconds of each stage on several meshes
-#   ./build.sh docs [--blender PATH]      the pictures of docs/orbifolds.md, rendered
+#   ./build.sh docs [--blender PATH]      the pictures of docs/orbifolds.md and docs/batch.md, rendered
 #   ./build.sh docs window [NAME...]      the pictures of Blender's window, of a real one on a virtual screen
 #   ./build.sh docs cones                 the tables of docs/cones.md, measured (an hour)
 #   ./build.sh deps                       install what all of these need, and nothing else

@@ -153,6 +153,7 @@ def transfer(
     form_back: bool = False,
     shape_keys: bool = False,
     heat: bool = False,
+    heat_area: bool = False,
     signature: str = "",
     weights: str = "conformal",
     clamp: float = 0.01,
@@ -168,7 +169,7 @@ def transfer(
 
     landmarks   for the source and each target as many vertices, those that correspond in the same places (core has
                 landmark_sequence for a good sequence); None: the cones of the meshes
-    groups ... heat   what is written, as the check boxes of the panel Transfer
+    groups ... heat_area   what is written, as the check boxes of the panel Transfer
     signature   empty: by the number of landmarks
     weights, clamp   as core.embed; holes: None: the choice that is kept with each mesh
     progress    called as progress(stage, fraction), for each mesh in turn; returning False cancels (ORB_CANCELLED)
@@ -180,10 +181,9 @@ def transfer(
             "for each, that of the source first"
         )
     wishes = Wishes(
-        groups=groups, colours=colours, attributes=attributes, uv_maps=uv_maps, cut_seams=cut_seams,
-        texture=texture, form=form,
-        form_back=form_back, shape_keys=shape_keys, heat=heat, signature=signature, weights=weights, clamp=clamp,
-        holes=holes,
+        groups=groups, colours=colours, attributes=attributes, uv_maps=uv_maps, cut_seams=cut_seams, texture=texture,
+        form=form, form_back=form_back, shape_keys=shape_keys, heat=heat, heat_area=heat_area, signature=signature,
+        weights=weights, clamp=clamp, holes=holes,
     )
     with _expected(source, *chosen):
         work = Transferring(source, chosen, wishes, landmarks)

@@ -98,6 +98,11 @@ class Correspondence:
     def nearest_of_corners(self, values: np.ndarray) -> np.ndarray:
         return self.corners.nearest(values[self.source.loops])
 
+    def of_faces(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(faces, ...) values of the source's faces -> those at the middles of the target's faces (k,), and these."""
+        faces = np.flatnonzero(self.middles.there)
+        return values[self.source.polygons[self.middles.triangles[faces]]], faces
+
     @cached_property
     def images(self) -> np.ndarray:
         """(n, 3) where the target's vertices are in the source's coordinates; NaN for those that are nowhere."""

@@ -13,8 +13,8 @@ GROUPS = dict(
 COLOURS = dict(name="Colours", default=True, description="Colour attributes, of vertices and of face corners")
 ATTRIBUTES = dict(
     name="Attributes", default=True,
-    description="All other attributes of vertices and face corners: numbers and vectors are interpolated, whole "
-    "numbers and booleans are those of the nearest vertex",
+    description="All other attributes of vertices, face corners and faces: numbers and vectors are interpolated, whole "
+    "numbers and booleans are those of the nearest vertex. A face gets what the source's face at its middle has",
 )
 UV_MAPS = dict(
     name="UV Maps", default=True,
@@ -43,8 +43,14 @@ SHAPE_KEYS = dict(
     description="The source's shape keys as displacements of the target, turned with its surface and as large as it is",
 )
 HEAT = dict(
-    name="Heat Map of the Map", default=False,
+    name="Heat Map of Angles", default=False,
     description="Colour each target by the angle distortion of its map, as the colour attribute Orbifold Map",
+)
+HEAT_AREA = dict(
+    name="Heat Map of Areas", default=False,
+    description="Colour each target by the area distortion of its map, as the colour attribute Orbifold Map Area: red "
+    "where what comes over becomes larger, blue where smaller, beside the scale of the whole. With both heat maps this "
+    "one is shown",
 )
 SIGNATURE = dict(
     name="Orbifold",
@@ -53,7 +59,7 @@ SIGNATURE = dict(
 )
 NAMES = (
     "groups", "colours", "attributes", "uv_maps", "cut_seams", "texture", "form", "form_back", "shape_keys", "heat",
-    "signature",
+    "heat_area", "signature",
 )
 
 
@@ -78,6 +84,7 @@ class OrbifoldTransfer(bpy.types.PropertyGroup):
     form_back: BoolProperty(**FORM_BACK)
     shape_keys: BoolProperty(**SHAPE_KEYS)
     heat: BoolProperty(**HEAT)
+    heat_area: BoolProperty(**HEAT_AREA)
     signature: StringProperty(**SIGNATURE)
 
 

@@ -50,8 +50,9 @@ class Transferring:
 
     # --------------------------------------------------------------------------------- before the computation
 
-    def start(self) -> core.Job:
-        """Checks all, and gives the first job. Raises OrbifoldError and BlenderMeshError."""
+    def start(self, embedded: Optional[core.Result] = None) -> core.Job:
+        """Checks all, and gives the first job. `embedded`: the source, by an earlier transfer from it with the same
+        landmarks and wishes. Raises OrbifoldError and BlenderMeshError."""
         source, *targets = objects = self._objects
         if not self.wishes.any:
             raise blender_mesh.BlenderMeshError("Nothing is ticked that could be transferred")
@@ -70,6 +71,8 @@ class Transferring:
             for target in targets:
                 self.at = target
                 self._check_names(source, target)
+        if embedded is not None:
+            self.source.result, self._next = embedded, 1
         return self._embedding()
 
     def _check_targets(self, source: bpy.types.Object, targets: Sequence[bpy.types.Object]) -> None:
@@ -125,8 +128,8 @@ class Transferring:
         try:
             for name, domain, kind in attributes_of(self.source, self.wishes):
                 blender_mesh.check_attribute(target.data, name, kind, domain)
-            if self.wishes.heat:
-                heat.check(target.data, heat.MAP)
+            for measure in self.wishes.heat_maps:
+                heat.check(target.data, measure)
             for name in uv_maps:
                 blender_mesh.check_uv_space(target.data, name)
         except blender_mesh.BlenderMeshError as error:
@@ -229,7 +232,7 @@ class Transferring:
                     "crossing_faces": outcome.crossing.tolist(),
                     "cut_faces": outcome.cut.cut_faces if outcome.cut is not None else 0,
                     "cut_pieces": outcome.cut.cut_pieces if outcome.cut is not None else 0,
-                    "landmark_residual": outcome.landmark_residual,
+                    "landmark_residual": outcome.map.landmark_residual,
                     "cut_ratio": outcome.cut_ratio,
                     "flipped": outcome.distortion.flipped,
                     "bijective": True,  # both embeddings are certified

@@ -36,7 +36,7 @@ from .suggest import (
 )
 from .surface_map import MapDistortion, SurfaceMap, Trace, interpolated, landmark_sequence, surface_map
 from .topology import Topology, topology_of, vertex_components
-from .wallpaper import Wallpaper
+from .wallpaper import Wallpaper, fill_seam_margin
 from .whole import WholeLayout, edge_keys, whole_layout
 
 __all__ = [
@@ -66,6 +66,7 @@ __all__ = [
     "describe",
     "edge_keys",
     "embed",
+    "fill_seam_margin",
     "find_defects",
     "fitting_signatures",
     "format_signature",

@@ -294,6 +294,7 @@ PROTOTYPES = {
     "orb_wallpaper_apply": (
         c_int, [WALLPAPER, POINTER(Image), c_int, c_void_p, INT32S, c_int32, POINTER(Error)],
     ),
+    "orb_fill_seam_margin": (c_int, [POINTER(Image), c_bool, c_int32, INT32S, DOUBLES, c_int32, POINTER(Error)]),
     "orb_landmark_sequence": (c_int, [POINTER(MeshArrays), c_int32, INT32S, INT32S, INT32S, POINTER(Error)]),
 }
 
@@ -487,10 +488,26 @@ class Wallpaper:
         self, pixels: np.ndarray, source: int, painted: np.ndarray | None, area: np.ndarray | None, threads: int
     ) -> None:
         """orb_wallpaper_apply on contiguous (h, w, channels), in place; painted (h, w) uint8, area (4,) int32."""
-        height, width, channels = pixels.shape
-        image, record = Image(width, height, channels, TEXELS[pixels.dtype.name], pixels.ctypes.data), Error()
-        mask = None if painted is None else painted.ctypes.data
-        check(library().orb_wallpaper_apply(self._pointer, image, source, mask, int32s(area), threads, record), record)
+        mask, record = None if painted is None else painted.ctypes.data, Error()
+        done = library().orb_wallpaper_apply(
+            self._pointer, image_of(pixels), source, mask, int32s(area), threads, record
+        )
+        check(done, record)
+
+
+def image_of(pixels: np.ndarray) -> Image:
+    """Of a contiguous (h, w, channels), which has to live as long."""
+    height, width, channels = pixels.shape
+    return Image(width, height, channels, TEXELS[pixels.dtype.name], pixels.ctypes.data)
+
+
+def fill_seam_margin(pixels: np.ndarray, repeats: bool, triangles: np.ndarray, uv: np.ndarray, texels: int) -> None:
+    """orb_fill_seam_margin on contiguous (h, w, channels), in place; triangles (m, 3), uv (m, 3, 2)."""
+    record = Error()
+    filled = library().orb_fill_seam_margin(
+        image_of(pixels), repeats, len(triangles), int32s(triangles), doubles(uv), texels, record
+    )
+    check(filled, record)
 
 
 class Prepared:

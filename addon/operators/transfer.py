@@ -59,6 +59,7 @@ class OBJECT_OT_orbifold_transfer(JobOperator, bpy.types.Operator):
     form_back: BoolProperty(**transfer_settings.FORM_BACK)
     shape_keys: BoolProperty(**transfer_settings.SHAPE_KEYS)
     heat: BoolProperty(**transfer_settings.HEAT)
+    heat_area: BoolProperty(**transfer_settings.HEAT_AREA)
     signature: StringProperty(**transfer_settings.SIGNATURE)
     weights: EnumProperty(**WEIGHTS)
 
