@@ -212,9 +212,11 @@ static int64_t untangle(mender *m, bool as_float, double budget) {
         if (bad == 0 || m->work >= end)
             return bad;
         bool stuck = bad >= least - least / 8;
-        if (stuck)
-            rings = as_float && rings > 15 ? 0 : 2 * rings + 1; /* for a float not the whole sphere */
-        else if (bad < least / 2 && least < INT64_MAX)
+        if (stuck && as_float && rings > 15) /* for a float not the whole sphere */
+            rings = 0;
+        else if (stuck && rings < m->mesh->n_vertices)
+            rings = 2 * rings + 1;
+        else if (!stuck && bad < least / 2 && least < INT64_MAX)
             rings /= 2;
         least = bad < least ? bad : least;
         find_region(m, as_float, rings);
