@@ -247,6 +247,28 @@ static void advise(const orb_mesh_arrays *mesh, const orb_request *request, orb_
         snprintf(error->message + used, room, "; nor do other weights embed it");
 }
 
+/* Vertices that the computation has added, where it halved edges or filled holes, are none of the user's to look at. */
+static void forget_added_vertices(const orb_mesh_arrays *mesh, const orb_request *request, orb_error *error) {
+    const int32_t n = request->prepared ? request->prepared->mesh->n_vertices : mesh->n_vertices;
+    const int32_t entries = error && error->element == ORB_EDGE ? 2 : 1;
+    int32_t kept = 0;
+    if (!error || (error->element != ORB_VERTEX && error->element != ORB_EDGE) || error->status == ORB_BAD_CONE ||
+        error->status == ORB_INDEX_OUT_OF_RANGE)
+        return;
+    for (int32_t k = 0; k < error->n_elements; k += entries) {
+        if (error->elements[k] >= n || error->elements[k + entries - 1] >= n)
+            continue;
+        for (int32_t i = 0; i < entries; i++)
+            error->elements[kept++] = error->elements[k + i];
+    }
+    if (kept == error->n_elements)
+        return;
+    error->n_elements = kept;
+    const size_t used = strlen(error->message), room = sizeof error->message - used;
+    snprintf(error->message + used, room, " (vertices from %d on were added where edges were halved or holes filled)",
+             (int)n);
+}
+
 orb_status orb_embed(const orb_mesh_arrays *mesh, const orb_request *request, orb_embedding **result,
                      orb_error *error) {
     if (!result)
@@ -261,6 +283,7 @@ orb_status orb_embed(const orb_mesh_arrays *mesh, const orb_request *request, or
         return error_set(error, ORB_OK, "%s", "");
     orb_embedding_free(*result);
     *result = NULL;
+    forget_added_vertices(mesh, request, error);
     if (weights_may_be_to_blame(status))
         advise(mesh, request, error);
     return status;
