@@ -95,28 +95,7 @@ want_screen() {
     want libgl1-mesa-dri
 }
 
-want_# Both targets for so many seconds each, from the kept corpus on; what they find is left in build/fuzz.
-fuzz() {
-    local name folder seconds=${arguments[0]:-60} binary
-    want_native
-    want clang clang
-    want_python sys
-    install_missing
-    make_native fuzz
-    export PYTHONDONTWRITEBYTECODE=1
-    for name in embed images; do
-        folder=$build/fuzz/$name binary=$build/native/fuzz/fuzz_$name
-        "$(find_python sys)" "$root/tests/fuzz/corpus.py" unpack "$root/tests/fuzz/$name.txt" "$folder"
-        "$binary" -max_total_time="$seconds" -max_len=256 -timeout=30 -artifact_prefix="$folder-" "$folder" \
-            2>"$folder.log" || die "fuzz_$name found something: $folder.log"
-        tail -n 1 "$folder.log"
-        mkdir -p "$folder.least"
-        "$binary" -merge=1 "$folder.least" "$folder" 2>>"$folder.log"
-        "$(find_python sys)" "$root/tests/fuzz/corpus.py" pack "$folder.least" "$root/tests/fuzz/$name.txt"
-    done
-}
-
-docs() {
+want_docs() {
     want_blender
     want_python numpy
     want pngquant pngquant
@@ -247,6 +226,27 @@ extension_blender() {
 version_of() { "$@" --version 2>/dev/null </dev/null | sed -n 's/^Blender \([0-9.]*\).*/\1/p'; }
 
 bench() { native; make_native bench; "$build/native/bench" "${arguments[@]}"; }
+
+# Both targets for so many seconds each, from the kept corpus on; what they find is left in build/fuzz.
+fuzz() {
+    local name folder seconds=${arguments[0]:-60} binary
+    want_native
+    want clang clang
+    want_python sys
+    install_missing
+    make_native fuzz
+    export PYTHONDONTWRITEBYTECODE=1
+    for name in embed images; do
+        folder=$build/fuzz/$name binary=$build/native/fuzz/fuzz_$name
+        "$(find_python sys)" "$root/tests/fuzz/corpus.py" unpack "$root/tests/fuzz/$name.txt" "$folder"
+        "$binary" -max_total_time="$seconds" -max_len=256 -timeout=30 -artifact_prefix="$folder-" "$folder" \
+            2>"$folder.log" || die "fuzz_$name found something: $folder.log"
+        tail -n 1 "$folder.log"
+        mkdir -p "$folder.least"
+        "$binary" -merge=1 "$folder.least" "$folder" 2>>"$folder.log"
+        "$(find_python sys)" "$root/tests/fuzz/corpus.py" pack "$folder.least" "$root/tests/fuzz/$name.txt"
+    done
+}
 
 docs() {
     export PYTHONDONTWRITEBYTECODE=1
