@@ -29,6 +29,13 @@ def make_material(
     extent = np.ptp(layout.uv.reshape(-1, 2), axis=0).max()
     size = size or (IMAGE_SIZE if extent > SMALL_LAYOUT else 2 * IMAGE_SIZE)
     material = bpy.data.materials.get(name) or bpy.data.materials.new(name)
+    extension = "REPEAT" if layout.chart in pattern.REPEATING else "EXTEND"
+    show_image(material, _image(name, pattern.image(result, layout, size)), extension)
+    return material
+
+
+def show_image(material: bpy.types.Material, image: bpy.types.Image, extension: str) -> None:
+    """By the UV map `Orbifold`, in place of what the material showed. The image texture becomes the active node."""
     blender_mesh.enable_nodes(material)
     tree = material.node_tree
     tree.nodes.clear()
@@ -37,13 +44,12 @@ def make_material(
     texture = _node(tree, "ShaderNodeTexImage", 0)
     coordinates = _node(tree, "ShaderNodeUVMap", -200)
     coordinates.uv_map = blender_mesh.UV_MAP
-    texture.extension = "REPEAT" if layout.chart in pattern.REPEATING else "EXTEND"
-    texture.image = _image(name, pattern.image(result, layout, size))
+    texture.image, texture.extension = image, extension
     shader.inputs["Roughness"].default_value = 0.6
     tree.links.new(coordinates.outputs["UV"], texture.inputs["Vector"])
     tree.links.new(texture.outputs["Color"], shader.inputs["Base Color"])
     tree.links.new(shader.outputs["BSDF"], output.inputs["Surface"])
-    return material
+    tree.nodes.active = texture
 
 
 def assign(obj: bpy.types.Object, material: bpy.types.Material, faces: Optional[np.ndarray] = None) -> None:
