@@ -149,8 +149,17 @@ def _repeat(image: bpy.types.Image) -> None:
     wallpaper.symmetrize(result, "painted", painted, area)
     if image_pixels.differing(result, pixels).any():
         _State.halves.setdefault(image.name_full, set()).add(image_pixels.digest(pixels))
-        write_with_undo(image, result)
+        write_with_undo(image, *([pixels] if _painted_in_editors(image) else []), result)
     note_written(image, result)
+
+
+def _painted_in_editors(image: bpy.types.Image) -> bool:
+    """Whether an image editor shows it to be painted on. The undo step of such a stroke, unlike that of one on the
+    mesh, counts the image as a tile, and Blender's other operators do not find what it leaves: they need a step of
+    their own with that."""
+    screens = [window.screen for window in bpy.context.window_manager.windows]
+    spaces = [area.spaces.active for screen in screens for area in screen.areas if area.type == "IMAGE_EDITOR"]
+    return any(space.mode == "PAINT" and space.image == image for space in spaces)
 
 
 def _fail(image: bpy.types.Image, error: Exception) -> None:
