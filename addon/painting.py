@@ -10,7 +10,7 @@ them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import partial
 from typing import Optional
 
@@ -22,12 +22,14 @@ from . import blender_mesh, core, image_pixels, layouts, overlay, symmetric_imag
 from .symmetric_image import Symmetry
 
 WALLPAPERS = 3  # that are kept; each is two bytes a texel
+HALVES = 2  # of one stroke at most (_painted_in_editors)
 SCENERY = (bpy.types.Object, bpy.types.Mesh, bpy.types.Material, bpy.types.NodeTree, bpy.types.Scene)
 
 
 class _State:
     busy = False  # we are writing
     undoing = False
+    passing = False  # undo and redo go on by themselves
     kept: dict[str, np.ndarray] = {}  # image -> its pixels after the last stroke
     halves: dict[str, set[bytes]] = {}  # image -> digests of its pixels with a stroke and without copies
     problems: dict[str, str] = {}  # image -> why strokes on it are not repeated
@@ -234,28 +236,48 @@ def before_undo(*_arguments: object) -> None:
 
 @persistent
 def after_undo(*_arguments: object) -> None:
-    _pass_halves(bpy.ops.ed.undo)
+    _look_again("undo")
 
 
 @persistent
 def after_redo(*_arguments: object) -> None:
-    _pass_halves(bpy.ops.ed.redo)
+    _look_again("redo")
 
 
-def _pass_halves(step: Callable) -> None:
-    """Go on in the same direction where an image has a stroke and not its copies."""
+def _look_again(direction: str) -> None:
+    """Go on in the same direction where an image has a stroke and not its copies; not at once, for Blender may crash
+    where one undo is called within another."""
     _State.undoing = False
     forget_layouts()
-    at_half = False
+    if not _State.passing and _is_at_half() and not bpy.app.background:
+        bpy.app.timers.register(partial(_pass_halves, direction))
+
+
+def _is_at_half() -> bool:
+    """Whether an image is; all that are known are read."""
+    found = False
     for image in bpy.data.images:
         name = image.name_full
         if (name in _State.kept or name in _State.halves) and image_pixels.problem(image) is None:
             pixels = image_pixels.read(image)
-            at_half |= image_pixels.digest(pixels) in _State.halves.get(name, ())
+            halves = _State.halves.get(name, ())
+            found |= bool(halves) and image_pixels.digest(pixels) in halves
             if name in _State.kept:
                 _State.kept[name] = pixels
-    if at_half and step.poll():
-        step()
+    return found
+
+
+def _pass_halves(direction: str) -> None:
+    step = getattr(bpy.ops.ed, direction)
+    _State.passing = True
+    try:
+        with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+            left = HALVES
+            while _is_at_half() and left and step.poll():
+                step()
+                left -= 1
+    finally:
+        _State.passing = False
 
 
 @persistent
@@ -266,7 +288,7 @@ def forget(*_arguments: object) -> None:
 
 
 def clear() -> None:
-    _State.busy = _State.undoing = False
+    _State.busy = _State.undoing = _State.passing = False
     for there in (_State.kept, _State.halves, _State.problems, _State.symmetries, _State.wallpapers):
         there.clear()
 

@@ -176,6 +176,10 @@ def test_a_stroke_on_the_image_is_repeated_and_undone(painted: dict) -> None:
     assert painted["on_image"][0] > 500 and painted["on_image"][1] and painted["on_image_undone"]
 
 
+def test_strokes_and_undos_that_follow_at_once(painted: dict) -> None:
+    assert painted["hasty"] == [True, True] and painted["hasty_undone"] and painted["hasty_undone_all"]
+
+
 def test_symmetrize_image_is_undone_at_once_in_paint_mode_and_in_object_mode(painted: dict) -> None:
     assert painted["not_repeated"]
     assert painted["symmetrized_TEXTURE_PAINT"] == painted["symmetrized_OBJECT"] == [True, True, True]

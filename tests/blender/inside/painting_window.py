@@ -35,6 +35,7 @@ def steps():
     yield from prepared()
     yield from strokes()
     yield from on_the_image()
+    yield from hasty()
     yield from symmetrized()
     yield from another_file()
 
@@ -144,6 +145,35 @@ def on_the_image():
     yield from photographed(picture, "image")
     yield from key("Z", ctrl=True)
     seen["on_image_undone"] = bool((pixels() == before).all())
+
+
+def hasty():
+    """The next stroke begins in the tick in which the one before ends; two undos in one tick."""
+    before, region = pixels(), region_of()
+    places = [(region.x + x * region.width, region.y + y * region.height) for x in (0.3, 0.38, 0.45) for y in (0.5, 0.6)]
+    move_to(*places[0])
+    yield
+    for start, end in (places[:2], places[2:4], places[4:]):
+        move_to(*start)
+        simulate("LEFTMOUSE", "PRESS")
+        yield
+        move_to(*end)
+        yield
+        simulate("LEFTMOUSE", "RELEASE")
+    for _ in range(10):
+        yield
+    seen["hasty"] = [bool((pixels() != before).any()), is_symmetric()]
+    move_into("VIEW_3D")
+    yield
+    for _ in range(3):
+        press("Z", ctrl=True)
+    for _ in range(10):
+        yield
+    seen["hasty_undone"] = is_symmetric()
+    for _ in range(3):
+        if (pixels() != before).any():
+            yield from key("Z", ctrl=True)
+    seen["hasty_undone_all"] = bool((pixels() == before).all())
 
 
 def symmetrized():
