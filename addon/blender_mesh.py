@@ -211,6 +211,8 @@ def write_uv_of_loops(mesh: bpy.types.Mesh, uv: np.ndarray, among: np.ndarray, n
 
 def _set_uv(layer: bpy.types.MeshUVLoopLayer, corners: np.ndarray) -> None:
     if hasattr(layer, "uv"):
+        if len(corners):
+            layer.data[0]  # version 4.3 would write to the map of the mesh that this one was copied from, too
         layer.uv.foreach_set("vector", corners.ravel())
     else:
         layer.data.foreach_set("uv", corners.ravel())
@@ -473,12 +475,12 @@ _OF_BLENDER = {"position", "material_index", "shade_smooth", "sharp_edge", "shar
 
 
 def plain_attributes(mesh: bpy.types.Mesh) -> list[tuple[str, str, str]]:
-    """(name, domain, type) of the attributes of vertices and corners that a person or a tool has made, of the types
-    that can be read here: no UV maps, nothing of Blender's own."""
+    """(name, domain, type) of the attributes of vertices, corners and faces that a person or a tool has made, of the
+    types that can be read here: no UV maps, nothing of Blender's own."""
     found = [(attribute.name, attribute.domain, attribute.data_type) for attribute in mesh.attributes]
     return [
         (name, domain, kind) for name, domain, kind in found
-        if domain in ("POINT", "CORNER") and kind in _VALUES and not name.startswith(".")
+        if domain in ("POINT", "CORNER", "FACE") and kind in _VALUES and not name.startswith(".")
         and name not in _OF_BLENDER and name not in mesh.uv_layers
     ]
 

@@ -40,7 +40,12 @@ ANGLE = Measure(
     tuple((float(np.log(factor)), f"{factor:g}") for factor in (1, 1.05, 1.15, 1.3, 1.6)),
 )
 MAP = Measure("Angle distortion of the map", "orbifold_map", "Orbifold Map", ANGLE.gain, ANGLE.ticks)
-MEASURES = (STRETCH, AREA, ANGLE, MAP)
+MAP_AREA = Measure(
+    *("Area factor of the map", "orbifold_map_area", "Orbifold Map Area", 2.0),
+    tuple((float(np.log(factor)), text)
+          for factor, text in ((0.25, "1/4"), (0.5, "1/2"), (1, "1"), (2, "2"), (4, "4"))),
+)
+MEASURES = (STRETCH, AREA, ANGLE, MAP, MAP_AREA)
 
 
 def colours_of(scale: np.ndarray) -> np.ndarray:
@@ -148,10 +153,15 @@ def distortion(arrays: blender_mesh.MeshArrays, points: np.ndarray, curvature: i
     return np.nan_to_num(ratio, posinf=0.0), np.nan_to_num(area, posinf=0.0, neginf=0.0)
 
 
+def areas_of(arrays: blender_mesh.MeshArrays) -> np.ndarray:
+    """(m,) of the triangles."""
+    p, q, r = arrays.vertices[arrays.triangles].transpose(1, 0, 2)
+    return np.linalg.norm(np.cross(q - p, r - p), axis=1) / 2
+
+
 def at_vertices(arrays: blender_mesh.MeshArrays, values: np.ndarray) -> np.ndarray:
     """(n,) the mean of the triangles' values (m,) around each vertex, weighted by their areas."""
-    p, q, r = arrays.vertices[arrays.triangles].transpose(1, 0, 2)
-    areas = np.repeat(np.linalg.norm(np.cross(q - p, r - p), axis=1) + 1e-30, 3)
+    areas = np.repeat(areas_of(arrays) + 1e-30, 3)
     total = np.bincount(arrays.triangles.ravel(), areas, len(arrays.vertices))
     sums = np.bincount(arrays.triangles.ravel(), areas * np.repeat(values, 3), len(arrays.vertices))
     return sums / np.maximum(total, 1e-30)

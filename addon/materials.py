@@ -25,12 +25,21 @@ def make_material(
     the file. An earlier one of this object is replaced."""
     if layout is None:
         layout = plain_layout(result)
-    name = f"Orbifold {obj.name}{name_ending}"
+    pixels = pattern.image(result, layout, size or image_size(layout))
+    return image_material(f"Orbifold {obj.name}{name_ending}", pixels, layout.chart)
+
+
+def image_size(layout: FaceLayout) -> int:
+    """Texels along a side of the unit square."""
     extent = np.ptp(layout.uv.reshape(-1, 2), axis=0).max()
-    size = size or (IMAGE_SIZE if extent > SMALL_LAYOUT else 2 * IMAGE_SIZE)
+    return IMAGE_SIZE if extent > SMALL_LAYOUT else 2 * IMAGE_SIZE
+
+
+def image_material(name: str, pixels: np.ndarray, chart: str) -> bpy.types.Material:
+    """A material that shows pixels (h, w, 4) by the UV map `Orbifold`, which is in this chart; an earlier one of this
+    name is replaced."""
     material = bpy.data.materials.get(name) or bpy.data.materials.new(name)
-    extension = "REPEAT" if layout.chart in pattern.REPEATING else "EXTEND"
-    show_image(material, _image(name, pattern.image(result, layout, size)), extension)
+    show_image(material, _image(name, pixels), "REPEAT" if chart in pattern.REPEATING else "EXTEND")
     return material
 
 

@@ -40,6 +40,7 @@ class _Drawn:
     places: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))  # of the cones, in the object's coordinates
     normals: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
     colours: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))  # of the cones
+    hues: int = 0  # from which these were taken
     cut_key: Optional[tuple] = None
     edges: np.ndarray = field(default_factory=lambda: np.zeros((0, 2), int))  # (s, 2) vertices, the cut's
     edge_indices: list = field(default_factory=list)  # (s,)
@@ -101,8 +102,16 @@ def _objects(context: bpy.types.Context) -> Iterator[bpy.types.Object]:
         yield obj
 
 
-def _drawn(context: bpy.types.Context, obj: bpy.types.Object) -> _Drawn:
-    """What is to be drawn for an object, up to date."""
+def _compared(objects: list[bpy.types.Object]) -> tuple[list[bpy.types.Object], int]:
+    """Of the objects those that are selected and have cones, where they are several, as for Orbifold Transfer; and how
+    many cones the one with the most has."""
+    found = [obj for obj in objects if obj.select_get() and len(obj.data.orbifold.cones)]
+    return (found, max(len(obj.data.orbifold.cones) for obj in found)) if len(found) > 1 else ([], 0)
+
+
+def _drawn(context: bpy.types.Context, obj: bpy.types.Object, hues: int = 0) -> _Drawn:
+    """What is to be drawn for an object, up to date. `hues`: the colours of its cones are the first ones of at least so
+    many."""
     known = _State.known.get(obj.name)
     mesh = obj.data
     cones = tuple((item.vertex, item.order) for item in mesh.orbifold.cones)
@@ -110,12 +119,14 @@ def _drawn(context: bpy.types.Context, obj: bpy.types.Object) -> _Drawn:
     cut_key = (counts, len(mesh.orbifold.layouts), mesh.orbifold.unwraps)
     names = {("Object", obj.name_full), ("Mesh", mesh.name_full)}
     if known is not None and known.cones == cones and known.cut_key == cut_key and not names & _State.changed:
+        if known.hues != hues:
+            known.colours, known.hues = _cone_colours(mesh, known.cones, hues), hues
         return known
     if known is None or known.cut_key != cut_key or not mesh.is_editmode:
         known = _Drawn(cut_key=cut_key)
         known.edge_indices, known.edges, known.paths = _read_cut(mesh)
     known.cones = cones if all(vertex < counts[0] for vertex, _ in cones) else ()
-    known.colours = _cone_colours(mesh, known.cones)
+    known.colours, known.hues = _cone_colours(mesh, known.cones, hues), hues
     _read_places(context, obj, known)
     known.sides = known.batch = None
     _State.known[obj.name] = known
@@ -124,10 +135,11 @@ def _drawn(context: bpy.types.Context, obj: bpy.types.Object) -> _Drawn:
     return known
 
 
-def _cone_colours(mesh: bpy.types.Mesh, cones: tuple) -> np.ndarray:
+def _cone_colours(mesh: bpy.types.Mesh, cones: tuple, hues: int) -> np.ndarray:
     """Those of the pattern, which follow the sequence of the signature: that of the list, but for corners. After a
-    change of the list it is no more that of the last unwrap."""
-    colours = pattern.palette(max(len(cones), pattern.LEAST_CENTRES))
+    change of the list it is no more that of the last unwrap. Of at least so many hues, for another mesh may have more
+    cones: equal places have equal colours."""
+    colours = pattern.palette(max(len(cones), hues, pattern.LEAST_CENTRES))
     latest = layouts.latest(mesh)
     places = layouts.cone_places(latest) if latest is not None else {}
     inside = [places.get(item.vertex, -1) for item in mesh.orbifold.cones if not item.mirror]
@@ -187,7 +199,9 @@ def draw_places() -> None:
     settings = _settings(context)
     if settings is None or not (settings.show_cones or settings.show_cut):
         return
-    shown = [(obj, _drawn(context, obj)) for obj in _objects(context)]
+    objects = list(_objects(context))
+    compared, hues = _compared(objects)
+    shown = [(obj, _drawn(context, obj, hues if obj in compared else 0)) for obj in objects]
     if not shown:
         return
     seen_from = gpu.matrix.get_model_view_matrix()
@@ -287,15 +301,15 @@ def draw_texts() -> None:
         return
     view = np.array(context.region_data.view_matrix)
     objects = list(_objects(context))
-    several = sum(obj.select_get() and bool(len(obj.data.orbifold.cones)) for obj in objects) > 1
+    compared, hues = _compared(objects)
     for obj in objects:
-        drawn = _drawn(context, obj)
+        drawn = _drawn(context, obj, hues if obj in compared else 0)
         turned = (view[:3, :3] @ np.array(obj.matrix_world)[:3, :3]) @ drawn.normals.T
         for number, (_, order) in enumerate(drawn.cones):
             place = obj.matrix_world @ Vector(drawn.places[number])
             at = location_3d_to_region_2d(context.region, context.region_data, place)
             if at is not None:
-                text = f"{number + 1}." if several and obj.select_get() else str(order)
+                text = f"{number + 1}." if obj in compared else str(order)
                 _write(context, at, text, 1.0 if turned[2, number] >= 0 else 0.4)
 
 

@@ -4,7 +4,8 @@
     blender --background --factory-startup --python-exit-code 1 --python addon/run.py -- [MESH ...] [OPTIONS]
 
 which `./build.sh run` does; `-- --help` lists the options. The add-on's package is loaded from this folder under its
-own name; nothing is installed or registered, and sys.path stays as it is."""
+own name; nothing is installed, nothing registered but, for maps, what meshes and scenes keep, and sys.path stays as it
+is."""
 
 from __future__ import annotations
 

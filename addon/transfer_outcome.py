@@ -12,8 +12,9 @@ from typing import Optional
 import bpy
 import numpy as np
 
-from . import arrangement, baking, blender_mesh, core, heat, textures
+from . import arrangement, baking, blender_mesh, core, heat, seam_edit, textures
 from .correspondence import Correspondence
+from .seam_cut import SeamCut, cut_along
 from .steps import Step, part_of
 
 FORM = "Form of {}"  # shape keys
@@ -28,11 +29,13 @@ class Wishes:
     attributes: bool = True
     colours: bool = True
     uv_maps: bool = True
+    cut_seams: bool = False  # the targets' faces, where those are torn
     texture: bool = False  # the image of the source's material, to the targets' active UV maps
     form: bool = False  # a shape key of each target: the source's form
     form_back: bool = False  # a shape key of the source for each target: its form
     shape_keys: bool = False
     heat: bool = False
+    heat_area: bool = False
     signature: str = ""  # empty: orbifold_for
     weights: str = "conformal"
     clamp: float = 0.01
@@ -41,7 +44,13 @@ class Wishes:
     @property
     def any(self) -> bool:
         ticked = (self.groups, self.attributes, self.colours, self.uv_maps, self.texture, self.form, self.form_back)
-        return any((*ticked, self.shape_keys, self.heat))
+        return any((*ticked, self.shape_keys, *self.heat_maps))
+
+    @property
+    def heat_maps(self) -> list[heat.Measure]:
+        """The last one is shown."""
+        wanted = ((self.heat, heat.MAP), (self.heat_area, heat.MAP_AREA))
+        return [measure for ticked, measure in wanted if ticked]
 
 
 @dataclass
@@ -65,18 +74,29 @@ class Outcome:
     """What a target gets: the calls that write it, and what to say of it."""
 
     target: Member
-    distortion: core.MapDistortion
-    landmark_residual: float
+    map: core.SurfaceMap  # of the target onto the source
+    back: core.SurfaceMap  # of the source onto the target
     cut_ratio: float
     writes: list[Callable[[], object]] = field(default_factory=list)
     names: dict[str, list[str]] = field(default_factory=dict)  # of what is written, by kind
     crossing: np.ndarray = field(default_factory=lambda: np.zeros(0, int))  # faces that a seam runs through
+    cut: Optional[SeamCut] = None  # of its faces
+    cut_uv: dict[str, np.ndarray] = field(default_factory=dict)  # UV maps at the corners of the cut's pieces
     locked: list[str] = field(default_factory=list)  # vertex groups
+
+    @property
+    def distortion(self) -> core.MapDistortion:
+        return self.map.distortion
 
     @property
     def strained(self) -> bool:
         """As maps are whose landmarks do not correspond, or that are twisted."""
         return max(self.distortion.quasi_conformal_mean, self.cut_ratio) > MUCH
+
+    def write_cut(self) -> None:
+        """After all `writes`, as vertices and faces are added."""
+        if self.cut is not None and self.cut.pieces:
+            seam_edit.apply(self.target.obj.data, self.target.arrays.triangles, self.cut, self.cut_uv)
 
     def add(self, kind: str, name: str, write: Callable[[], object]) -> None:
         self.names.setdefault(kind, []).append(name)
@@ -106,13 +126,17 @@ def outcome_of(
     to_source = core.SurfaceMap(target.result, source.result)
     back = core.SurfaceMap(source.result, target.result)
     work = Correspondence(source.arrays, target.arrays, to_source, back)
-    outcome = Outcome(target, to_source.distortion, to_source.landmark_residual, work.cut_ratio)
+    outcome = Outcome(target, to_source, back, work.cut_ratio)
     if wishes.groups:
         yield "groups", 0.1
         _add_groups(source, work, outcome)
     yield "attributes", 0.2
     _add_attributes(source, attributes_of(source, wishes), work, outcome)
-    for name in uv_maps_of(source, wishes):
+    names = uv_maps_of(source, wishes)
+    if wishes.cut_seams and names:
+        own = [blender_mesh.read_uv(source.obj.data, name).astype(np.float64) for name in names]
+        outcome.cut = yield from part_of(0.2, 0.3, cut_along(work, own))
+    for name in names:
         yield "UV maps", 0.3
         _add_uv_map(source, name, work, outcome)
     if texture is not None:
@@ -127,11 +151,22 @@ def outcome_of(
         _add_key(outcome, source.obj, np.where(np.isfinite(form), form, own), FORM.format(target.obj.name))
     if wishes.shape_keys:
         _add_shape_keys(source, work, outcome)
-    if wishes.heat:
-        ratio = np.log(np.maximum(outcome.distortion.quasi_conformal, 1.0))
-        values = heat.at_vertices(target.arrays, ratio)
-        outcome.add("heat map", heat.MAP.colour, lambda: heat.show(bpy.context, target.obj.data, heat.MAP, values))
+    for measure in wishes.heat_maps:
+        values = heat.at_vertices(target.arrays, _distortion(source, outcome, measure))
+        outcome.add("heat maps", measure.colour, partial(
+            heat.show, bpy.context, target.obj.data, measure, values
+        ))
     return outcome
+
+
+def _distortion(source: Member, outcome: Outcome, measure: heat.Measure) -> np.ndarray:
+    """(m,) of the target's triangles: the logarithm of the ratio of singular values, or that of the area there for the
+    area on the source, which is 0 for the meshes as a whole. 0 where the map has none."""
+    distortion = outcome.distortion
+    if measure == heat.MAP:
+        return np.log(np.maximum(distortion.quasi_conformal, 1.0))
+    whole = np.log(heat.areas_of(outcome.target.arrays).sum() / heat.areas_of(source.arrays).sum())
+    return np.where(distortion.quasi_conformal > 0, -distortion.log_area - whole, 0.0)
 
 
 def _add_groups(source: Member, work: Correspondence, outcome: Outcome) -> None:
@@ -156,20 +191,35 @@ def _add_attributes(
 ) -> None:
     mesh, target = source.obj.data, outcome.target.obj.data
     for name, domain, kind in wanted:
-        values = blender_mesh.read_attribute(mesh, name)
-        of_vertices, exact = domain == "POINT", kind in ("INT", "BOOLEAN")
-        if of_vertices:
-            found = (work.nearest_of_vertices if exact else work.of_vertices)(values)
+        values, exact = blender_mesh.read_attribute(mesh, name), kind in ("INT", "BOOLEAN")
+        if domain == "POINT":
+            found, among = (work.nearest_of_vertices if exact else work.of_vertices)(values), work.vertices.there
+        elif domain == "CORNER":
+            found, among = (work.nearest_of_corners if exact else work.of_corners)(values), work.corners.there
         else:
-            found = (work.nearest_of_corners if exact else work.of_corners)(values)
-        among = (work.vertices if of_vertices else work.corners).there
+            found, among = _of_faces(values, work, len(target.polygons))
         outcome.add("colours" if name in mesh.color_attributes else "attributes", name, partial(
             blender_mesh.write_attribute, target, name, domain, kind, found, among
         ))
 
 
+def _of_faces(values: np.ndarray, work: Correspondence, n_faces: int) -> tuple[np.ndarray, np.ndarray]:
+    """(n_faces, width) of the target, and which of its faces have one."""
+    known, faces = work.of_faces(values)
+    found, among = np.zeros((n_faces, values.shape[1]), values.dtype), np.zeros(n_faces, bool)
+    found[faces], among[faces] = known, True
+    return found, among
+
+
 def _add_uv_map(source: Member, name: str, work: Correspondence, outcome: Outcome) -> None:
-    uv, crossing = work.of_uv(blender_mesh.read_uv(source.obj.data, name).astype(np.float64))
+    own = blender_mesh.read_uv(source.obj.data, name).astype(np.float64)
+    uv, crossing = work.of_uv(own)
+    if outcome.cut is not None:
+        crossing = outcome.cut.crossing
+        across = np.zeros(len(uv), bool)
+        across[work.target.loops[np.isin(work.target.polygons, crossing)]] = True
+        uv = np.where(across[:, None], uv, work.of_corners(own))
+        outcome.cut_uv[name] = outcome.cut.corners.mixed(own[work.source.loops])
     outcome.crossing = np.union1d(outcome.crossing, crossing).astype(int)
     outcome.add("UV maps", name, partial(
         blender_mesh.write_uv_of_loops, outcome.target.obj.data, uv, work.corners.there, name
@@ -228,6 +278,8 @@ def described(outcome: Outcome) -> str:
             f" That is much, and the source's landmark paths become {outcome.cut_ratio:.1f} times as long as its own: "
             "look whether the landmarks correspond, and whether another order of them mends a twist."
         )
+    if outcome.cut is not None and outcome.cut.cut_faces:
+        text += f" {outcome.cut.cut_faces} faces were cut into {outcome.cut.cut_pieces} at the source's seams."
     if len(outcome.crossing):
         text += f" {len(outcome.crossing)} faces cross a seam of the source's UV maps: they are selected."
     if outcome.locked:

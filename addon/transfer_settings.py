@@ -13,12 +13,17 @@ GROUPS = dict(
 COLOURS = dict(name="Colours", default=True, description="Colour attributes, of vertices and of face corners")
 ATTRIBUTES = dict(
     name="Attributes", default=True,
-    description="All other attributes of vertices and face corners: numbers and vectors are interpolated, whole "
-    "numbers and booleans are those of the nearest vertex",
+    description="All other attributes of vertices, face corners and faces: numbers and vectors are interpolated, whole "
+    "numbers and booleans are those of the nearest vertex. A face gets what the source's face at its middle has",
 )
 UV_MAPS = dict(
     name="UV Maps", default=True,
     description="Faces that a seam of the source runs through continue the island of their middle, and are selected",
+)
+CUT_SEAMS = dict(
+    name="Cut Faces at Seams", default=False,
+    description="Cut the targets' faces where seams of the source's UV maps run through them, so that the UV maps are "
+    "right everywhere. The targets get new vertices and faces, and seams there",
 )
 TEXTURE = dict(
     name="Image Texture", default=False,
@@ -38,8 +43,14 @@ SHAPE_KEYS = dict(
     description="The source's shape keys as displacements of the target, turned with its surface and as large as it is",
 )
 HEAT = dict(
-    name="Heat Map of the Map", default=False,
+    name="Heat Map of Angles", default=False,
     description="Colour each target by the angle distortion of its map, as the colour attribute Orbifold Map",
+)
+HEAT_AREA = dict(
+    name="Heat Map of Areas", default=False,
+    description="Colour each target by the area distortion of its map, as the colour attribute Orbifold Map Area: red "
+    "where what comes over becomes larger, blue where smaller, beside the scale of the whole. With both heat maps this "
+    "one is shown",
 )
 SIGNATURE = dict(
     name="Orbifold",
@@ -47,8 +58,17 @@ SIGNATURE = dict(
     "333 for three landmarks, 2222 for four in the plane, and cones of order 2 in the hyperbolic plane for more",
 )
 NAMES = (
-    "groups", "colours", "attributes", "uv_maps", "texture", "form", "form_back", "shape_keys", "heat", "signature",
+    "groups", "colours", "attributes", "uv_maps", "cut_seams", "texture", "form", "form_back", "shape_keys", "heat",
+    "heat_area", "signature",
 )
+
+
+def draw(layout: bpy.types.UILayout, settings: bpy.types.bpy_struct, name: str) -> None:
+    """One of NAMES, grey where it has no effect."""
+    row = layout.row()
+    if name == "cut_seams":
+        row.enabled = settings.uv_maps
+    row.prop(settings, name)
 
 
 class OrbifoldTransfer(bpy.types.PropertyGroup):
@@ -58,11 +78,13 @@ class OrbifoldTransfer(bpy.types.PropertyGroup):
     colours: BoolProperty(**COLOURS)
     attributes: BoolProperty(**ATTRIBUTES)
     uv_maps: BoolProperty(**UV_MAPS)
+    cut_seams: BoolProperty(**CUT_SEAMS)
     texture: BoolProperty(**TEXTURE)
     form: BoolProperty(**FORM)
     form_back: BoolProperty(**FORM_BACK)
     shape_keys: BoolProperty(**SHAPE_KEYS)
     heat: BoolProperty(**HEAT)
+    heat_area: BoolProperty(**HEAT_AREA)
     signature: StringProperty(**SIGNATURE)
 
 

@@ -13,7 +13,7 @@ from typing import Optional, Union
 import bpy
 import numpy as np
 
-from . import arrangement, blender_mesh, cones, core, cut_paths, heat, layouts, textures
+from . import arrangement, blender_mesh, cones, core, cut_paths, heat, layouts, seam_edit, textures
 from .correspondence import orbifold_for
 from .steps import Step, Steps, part_of
 from .transfer_outcome import Member, Outcome, Wishes, attributes_of, described, outcome_of, uv_maps_of
@@ -50,8 +50,9 @@ class Transferring:
 
     # --------------------------------------------------------------------------------- before the computation
 
-    def start(self) -> core.Job:
-        """Checks all, and gives the first job. Raises OrbifoldError and BlenderMeshError."""
+    def start(self, embedded: Optional[core.Result] = None) -> core.Job:
+        """Checks all, and gives the first job. `embedded`: the source, by an earlier transfer from it with the same
+        landmarks and wishes. Raises OrbifoldError and BlenderMeshError."""
         source, *targets = objects = self._objects
         if not self.wishes.any:
             raise blender_mesh.BlenderMeshError("Nothing is ticked that could be transferred")
@@ -70,6 +71,8 @@ class Transferring:
             for target in targets:
                 self.at = target
                 self._check_names(source, target)
+        if embedded is not None:
+            self.source.result, self._next = embedded, 1
         return self._embedding()
 
     def _check_targets(self, source: bpy.types.Object, targets: Sequence[bpy.types.Object]) -> None:
@@ -84,6 +87,8 @@ class Transferring:
                         f"{other.name} and {target.name} share one mesh: make it single-user (Object > Relations), or "
                         "deselect one of them"
                     )
+            if self.wishes.uv_maps and self.wishes.cut_seams:
+                seam_edit.check(target)
 
     def _member(self, obj: bpy.types.Object, landmarks: list[int]) -> Member:
         self.at = obj
@@ -123,8 +128,8 @@ class Transferring:
         try:
             for name, domain, kind in attributes_of(self.source, self.wishes):
                 blender_mesh.check_attribute(target.data, name, kind, domain)
-            if self.wishes.heat:
-                heat.check(target.data, heat.MAP)
+            for measure in self.wishes.heat_maps:
+                heat.check(target.data, measure)
             for name in uv_maps:
                 blender_mesh.check_uv_space(target.data, name)
         except blender_mesh.BlenderMeshError as error:
@@ -201,6 +206,8 @@ class Transferring:
                     blender_mesh.select_elements(outcome.target.obj.data, nothing, nothing, outcome.crossing)
             for member in self.members:
                 _draw_paths(member)
+            for outcome in self.outcomes:  # at the end, as all else counts the vertices and faces that were there
+                outcome.write_cut()
 
     def message(self) -> str:
         said = [f"{outcome.target.obj.name}: {described(outcome)}" for outcome in self.outcomes]
@@ -223,7 +230,9 @@ class Transferring:
                     "written": outcome.names,
                     "locked_groups": outcome.locked,
                     "crossing_faces": outcome.crossing.tolist(),
-                    "landmark_residual": outcome.landmark_residual,
+                    "cut_faces": outcome.cut.cut_faces if outcome.cut is not None else 0,
+                    "cut_pieces": outcome.cut.cut_pieces if outcome.cut is not None else 0,
+                    "landmark_residual": outcome.map.landmark_residual,
                     "cut_ratio": outcome.cut_ratio,
                     "flipped": outcome.distortion.flipped,
                     "bijective": True,  # both embeddings are certified

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The pictures of docs/orbifolds.md, made by the program itself: `./build.sh docs [SIGNATURE...]`, all if none is named.
+# The pictures of docs/orbifolds.md, made by the program itself: `./build.sh docs [SIGNATURE...]`, all if none is named;
+# and as `map` that of docs/batch.md.
 # Each is what `./build.sh run MESH --orbifold SIGNATURE` renders, with fewer colours. $ORBIFOLD_BLENDER is the Blender.
 set -euo pipefail
 
@@ -48,16 +49,35 @@ sheet() {
     pngquant --force --speed 1 --strip --output "$docs/families.png" "$colours" -- "$work/families.png"
 }
 
+# The example of batch.md.
+map() {
+    local log=$work/blender.log start=("$ORBIFOLD_BLENDER" --background --factory-startup --python-exit-code 1)
+    echo "map"
+    if ! "${start[@]}" --python-expr "import bpy; bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=6); \
+            bpy.ops.wm.obj_export(filepath='$work/ball.obj', export_selected_objects=True)" >"$log" 2>&1 </dev/null ||
+        ! "${start[@]}" --python "$root/addon/run.py" -- --cones 3879,3976,3929,4027,4074,5184,5816,4124 --files png \
+            --map-to "$work/ball.obj" --map-cones 1850,7975,8511,9071,10147,5006,2967,2039 --output "$work" \
+            >"$log" 2>&1 </dev/null; then
+        grep '^orbifold error: ' "$log" >&2 || cat "$log" >&2
+        return 1
+    fi
+    pngquant --force --speed 1 --strip --output "$docs/map.png" "$colours" -- "$work/ball.png"
+}
+
+# wanted NAME [NAME...]: whether the first is among the others, or there are none.
+wanted() { [ $# = 1 ] || printf '%s\n' "${@:2}" | grep -qxF -- "$1"; }
+
 main() {
     local signature mesh failed=0
     mkdir -p "$work" "$pictures"
     "${ORBIFOLD_PYTHON:-python3}" "$docs/sample_meshes.py" "$work/meshes"
     while read -r signature mesh; do
-        if [ $# = 0 ] || printf '%s\n' "$@" | grep -qxF -- "$signature"; then
+        if wanted "$signature" "$@"; then
             picture "$signature" "$mesh" || failed=$((failed + 1))
         fi
     done < <(xargs -n 2 <<<"$table")
     sheet
+    if wanted map "$@"; then map || failed=$((failed + 1)); fi
     du -sh "$pictures" | sed 's/\t.*/ of pictures/'
     [ $failed = 0 ] || { echo "error: $failed pictures could not be made" >&2; exit 1; }
 }

@@ -256,7 +256,7 @@ def transferring() -> Generator:
         yield from click(region.x + 0.4 * region.width, region.y + region.height - (15 + 23 * row) * SCALE)
         yield from pause(3)
     yield from away()
-    yield from photograph(f"{folder}/transferring.png", (0, 0, 1, 0.9))
+    yield from photograph(f"{folder}/transferring.png", (0, 0, 1, 0.97))
 
 
 SIDE, MIDDLE, FAR = (72, 0, 62), (0, 0, 1.75), 5.6  # how the creature is looked at

@@ -34,9 +34,9 @@ from .suggest import (
     suggest_cones,
     worth_trying,
 )
-from .surface_map import MapDistortion, SurfaceMap, interpolated, landmark_sequence, surface_map
+from .surface_map import MapDistortion, SurfaceMap, Trace, interpolated, landmark_sequence, surface_map
 from .topology import Topology, topology_of, vertex_components
-from .wallpaper import Wallpaper
+from .wallpaper import Wallpaper, fill_seam_margin
 from .whole import WholeLayout, edge_keys, whole_layout
 
 __all__ = [
@@ -59,12 +59,14 @@ __all__ = [
     "Suggestion",
     "SuggestionJob",
     "SurfaceMap",
+    "Trace",
     "Topology",
     "Wallpaper",
     "WholeLayout",
     "describe",
     "edge_keys",
     "embed",
+    "fill_seam_margin",
     "find_defects",
     "fitting_signatures",
     "format_signature",

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import binding
-from .arrays import unknown
+from .arrays import integers, unknown
 from .errors import OrbifoldError
 
 
@@ -65,14 +65,7 @@ class Wallpaper:
         """
         if source not in binding.SOURCES:
             raise unknown("source", source, binding.SOURCES)
-        if (
-            not isinstance(pixels, np.ndarray) or pixels.dtype.name not in binding.TEXELS or pixels.ndim != 3
-            or not pixels.flags.c_contiguous or not pixels.flags.writeable
-        ):
-            raise OrbifoldError(
-                "ORB_BAD_ARGUMENT", "the pixels are no contiguous array (height, width, channels) of uint8, uint16 or "
-                "float32 that can be written to"
-            )
+        check_pixels(pixels)
         mask = None
         if source == "painted":
             mask = np.zeros(0, np.uint8) if painted is None else np.ascontiguousarray(np.asarray(painted) != 0, np.uint8)
@@ -83,3 +76,36 @@ class Wallpaper:
                 )
         box = None if area is None else np.array(area, np.int32).reshape(4)
         self._native.apply(pixels, binding.SOURCES[source], mask, box, self._threads)
+
+
+def fill_seam_margin(
+    pixels: np.ndarray, triangles: ArrayLike, uv: ArrayLike, texels: int, repeats: bool = False
+) -> None:
+    """Fills the texels around the islands of any UV map, in place, so far that filters and mipmaps read what they would
+    if there were no seams: where the surface goes on across a seam, there the image goes on too.
+
+    pixels     (height, width, channels) uint8, uint16 or float32, first row at v = 0
+    triangles  (m, 3) vertices of the mesh; uv (m, 3, 2)
+    texels     how far: 2^k for the k-th mipmap
+    repeats    the image does, and islands may lie anywhere
+    """
+    check_pixels(pixels)
+    faces = integers(triangles, (-1, 3), "triangles", "ORB_INDEX_OUT_OF_RANGE", "triangle")
+    points = np.array(uv, np.float64, order="C")
+    if points.shape != (len(faces), 3, 2):
+        raise OrbifoldError(
+            "ORB_BAD_ARGUMENT", f"the UVs have the shape {points.shape}; give (u, v) for each corner of {len(faces)} "
+            "triangles"
+        )
+    binding.fill_seam_margin(pixels, repeats, faces, points, texels)
+
+
+def check_pixels(pixels: np.ndarray) -> None:
+    if (
+        not isinstance(pixels, np.ndarray) or pixels.dtype.name not in binding.TEXELS or pixels.ndim != 3
+        or not pixels.flags.c_contiguous or not pixels.flags.writeable
+    ):
+        raise OrbifoldError(
+            "ORB_BAD_ARGUMENT", "the pixels are no contiguous array (height, width, channels) of uint8, uint16 or "
+            "float32 that can be written to"
+        )

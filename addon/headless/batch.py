@@ -6,15 +6,16 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Optional
 
 from .arguments import Arguments, Request
 from .errors import RunError
 from .importers import MESH_ENDINGS
 from .joblist import jobs_of
+from .mapping import Kept
+from .output import EXPECTED, Figures, fault, one_line
 from .progress import Progress, terminal
-from .session import EXPECTED, fault, one_line, run_one
+from .session import run_one
 
 HEADINGS = ("mesh", "signature", "cones", "flipped", "mean quasi-conformal", "area spread", "seconds")
 NUMBERS = ("flipped", "mean quasi-conformal", "area spread", "seconds")  # aligned to the right
@@ -27,17 +28,16 @@ class Row:
 
     mesh: str
     seconds: float
-    report: Optional[dict]  # None: failed
+    figures: Optional[Figures]  # None: failed
     error: str = ""
 
     def cells(self) -> tuple[str, ...]:
-        certificate, distortion = self.report["certificate"], self.report["distortion"]
-        cones = [str(cone["vertex"]) for cone in self.report["orbifold"]["cones"]]
+        figures = self.figures
+        cones = [str(vertex) for vertex in figures.cones]
         more = f" ... ({len(cones)})" if len(cones) > CONES_SHOWN else ""
         return (
-            self.mesh, self.report["orbifold"]["signature"], " ".join(cones[:CONES_SHOWN]) + more or "none",
-            str(certificate["flipped"]), f"{distortion['quasi_conformal_mean']:.3f}",
-            f"{distortion['log_area_std']:.2f}", f"{self.seconds:.1f}",
+            self.mesh, figures.signature, " ".join(cones[:CONES_SHOWN]) + more or "none", str(figures.flipped),
+            f"{figures.quasi_conformal_mean:.3f}", f"{figures.log_area_std:.2f}", f"{self.seconds:.1f}",
         )
 
 
@@ -47,16 +47,16 @@ class Batch:
 
     @property
     def failed(self) -> list[Row]:
-        return [row for row in self.rows if row.report is None]
+        return [row for row in self.rows if row.figures is None]
 
     def table(self) -> list[str]:
         """Lines; errors take the place of all columns but the first."""
-        done = [row.cells() for row in self.rows if row.report is not None]
+        done = [row.cells() for row in self.rows if row.figures is not None]
         widths = [max(map(len, column)) for column in zip(HEADINGS, *done)]
         widths[0] = max(widths[0], *(len(row.mesh) for row in self.rows))
         lines = [_line(HEADINGS, widths), "  ".join("-" * width for width in widths)]
         for row in self.rows:
-            if row.report is not None:
+            if row.figures is not None:
                 lines.append(_line(row.cells(), widths))
             else:
                 lines.append(f"{row.mesh:{widths[0]}}  failed: {row.error}")
@@ -76,31 +76,32 @@ def run_batch(request: Request) -> Batch:
     """RunError where there is nothing to be done at all."""
     jobs = jobs_of(request, MESH_ENDINGS)
     progress = Progress(len(jobs), terminal())
-    rows = []
+    rows, kept = [], Kept()
     try:
         for job in jobs:
-            rows.append(_run_job(job, progress))
+            rows.append(_run_job(job, progress, kept))
     finally:
         progress.close()
     return Batch(rows)
 
 
-def _run_job(job: Arguments | tuple[Path, RunError], progress: Progress) -> Row:
+def _run_job(job: Arguments | tuple[str, RunError], progress: Progress, kept: Kept) -> Row:
     started = time.perf_counter()
-    report, error = None, ""
-    mesh = job.mesh if isinstance(job, Arguments) else job[0]
-    progress.begin(mesh.name)
+    figures, error = None, ""
+    title = job.title if isinstance(job, Arguments) else job[0]
+    progress.begin(title)
     try:
         if not isinstance(job, Arguments):
             raise job[1]
-        report = run_one(job, progress.stage).report
+        figures = run_one(job, progress.stage, kept).figures
     except EXPECTED as reason:
         error = one_line(reason)
     except Exception as reason:  # a fault of ours with one mesh is no reason to leave out the others
         error = fault(reason)
-    error = error.removeprefix(f"{mesh}: ").removeprefix(f"{mesh.resolve()}: ")
-    row = Row(mesh.name, time.perf_counter() - started, report, error)
-    if report is None:
+    if isinstance(job, Arguments) and job.mesh is not None:
+        error = error.removeprefix(f"{job.mesh}: ").removeprefix(f"{job.mesh.resolve()}: ")
+    row = Row(title, time.perf_counter() - started, figures, error)
+    if figures is None:
         progress.end(f"{row.mesh}: failed: {error}", True)
     else:
         _, signature, cones, flipped, mean, spread, seconds = row.cells()

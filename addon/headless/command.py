@@ -11,7 +11,8 @@ from collections.abc import Sequence
 
 from .arguments import HelpWanted, read_request
 from .batch import run_batch
-from .session import EXPECTED, fault, one_line, run
+from .output import EXPECTED, fault, one_line
+from .session import run
 
 
 def main(words: Sequence[str]) -> int:

@@ -25,8 +25,11 @@ from .errors import RunError
 ReadMesh = Callable[[Path], tuple[np.ndarray, np.ndarray]]
 
 
-def load_object(path: Path, object_name: Optional[str], read_mesh: ReadMesh) -> bpy.types.Object:
-    """The mesh object of the file, alone in an empty scene. `read_mesh` is core.read_mesh."""
+def load_object(
+    path: Path, object_name: Optional[str], read_mesh: ReadMesh, option: str = "--object"
+) -> bpy.types.Object:
+    """The mesh object of the file, alone in an empty scene. `read_mesh` is core.read_mesh, `option` what would name it
+    on the command line."""
     if not path.is_file():
         raise RunError(f"{path}: there is no such file")
     importer = IMPORTERS.get(path.suffix.lower())
@@ -37,14 +40,14 @@ def load_object(path: Path, object_name: Optional[str], read_mesh: ReadMesh) -> 
     except (RuntimeError, ValueError, OSError) as reason:
         first_line = (str(reason).strip().splitlines() or ["unknown reason"])[0]
         raise RunError(f"{path}: cannot be imported ({first_line})") from reason
-    obj = _choose(path, object_name, active)
+    obj = _choose(path, object_name, active, option)
     if path.suffix.lower() == ".obj":
         _restore_unused_vertices(path, obj, read_mesh)
     _keep_only(obj)
     return obj
 
 
-def _choose(path: Path, object_name: Optional[str], active: Optional[str]) -> bpy.types.Object:
+def _choose(path: Path, object_name: Optional[str], active: Optional[str], option: str) -> bpy.types.Object:
     """The named object; else the only mesh with faces; else the active one."""
     meshes = {obj.name: obj for obj in bpy.data.objects if obj.type == "MESH" and len(obj.data.polygons)}
     listed = ", ".join(sorted(meshes))
@@ -58,7 +61,7 @@ def _choose(path: Path, object_name: Optional[str], active: Optional[str]) -> bp
         return next(iter(meshes.values()))
     if active in meshes:
         return meshes[active]
-    raise RunError(f"{path}: {len(meshes)} mesh objects ({listed}); say which with --object NAME")
+    raise RunError(f"{path}: {len(meshes)} mesh objects ({listed}); say which with {option} NAME")
 
 
 def _keep_only(obj: bpy.types.Object) -> None:

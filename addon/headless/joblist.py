@@ -8,7 +8,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Union
+from typing import Optional, Union
 
 from .arguments import OPTIONS, Arguments, Request
 from .errors import RunError
@@ -16,18 +16,39 @@ from .errors import RunError
 COLUMNS = ("mesh", *OPTIONS)
 
 
-def jobs_of(request: Request, endings: Sequence[str]) -> list[Union[Arguments, tuple[Path, RunError]]]:
-    """In the sequence of the command line, the list last; for a row that cannot be read its mesh and the reason.
+def jobs_of(request: Request, endings: Sequence[str]) -> list[Union[Arguments, tuple[str, RunError]]]:
+    """In the sequence of the command line, the list last; for a row that cannot be done its title and the reason.
     `endings` are those of mesh files, which are looked for in folders."""
-    jobs: list[Union[Arguments, tuple[Path, RunError]]] = []
-    for mesh in request.meshes:
-        files = _meshes_in(mesh, endings) if mesh.is_dir() else [mesh]
+    jobs: list[Union[Arguments, tuple[str, RunError]]] = []
+    for mesh in request.meshes or ([None] if request.jobs is None else []):
+        files = _meshes_in(mesh, endings) if mesh is not None and mesh.is_dir() else [mesh]
         jobs += [replace(request.arguments, mesh=file) for file in files]
     if request.jobs is not None:
         jobs += [_job(request.arguments, row, request.jobs.parent) for row in read_rows(request.jobs)]
     if not jobs:
         raise RunError(f"{request.jobs}: there is no job in the list")
-    return _without_clashes(jobs)
+    return _without_clashes([one for job in jobs for one in _with_targets(job, request.targets, endings)])
+
+
+def _with_targets(
+    job: Union[Arguments, tuple[str, RunError]], targets: Sequence[tuple[Path, Optional[tuple[int, ...]]]],
+    endings: Sequence[str],
+) -> list[Union[Arguments, tuple[str, RunError]]]:
+    """A job for each target; in a folder the source is none. A row of a list that names its own has only that."""
+    if not isinstance(job, Arguments):
+        return [job]
+    if job.map_to is not None:
+        targets = [(job.map_to, job.map_cones)]
+    if not targets:
+        return [job]
+    found = []
+    for target, cones in targets:
+        files = [target]
+        if target.is_dir():
+            source = job.mesh.resolve() if job.mesh is not None else None
+            files = [file for file in _meshes_in(target, endings) if file.resolve() != source]
+        found += [replace(job, map_to=file, map_cones=cones) for file in files]
+    return found
 
 
 def _meshes_in(folder: Path, endings: Sequence[str]) -> list[Path]:
@@ -79,36 +100,39 @@ def _as_text(value: object) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def _job(base: Arguments, row: dict[str, str], folder: Path) -> Union[Arguments, tuple[Path, RunError]]:
+def _job(base: Arguments, row: dict[str, str], folder: Path) -> Union[Arguments, tuple[str, RunError]]:
     mesh = folder / row["mesh"]
     values = {name: text for name, text in row.items() if text}
-    for name in ("cones", "orders"):  # numbers with spaces between them need no quotes in a .csv
+    for name in ("cones", "orders", "map-cones", "transfer"):  # with spaces instead no quotes are needed in a .csv
         if name in values:
             values[name] = ",".join(values[name].replace(",", " ").split())
     try:
         job = base.with_values(values)
     except RunError as reason:
-        return mesh, reason
+        return mesh.name, reason
     output = folder / job.output if "output" in values else job.output
-    return replace(job, mesh=mesh, output=output)
+    map_to = folder / job.map_to if "map-to" in values else job.map_to
+    return replace(job, mesh=mesh, output=output, map_to=map_to)
 
 
 def _without_clashes(
-    jobs: Sequence[Union[Arguments, tuple[Path, RunError]]]
-) -> list[Union[Arguments, tuple[Path, RunError]]]:
-    """Of jobs that would write the same files only the first is done, and none that would write over its mesh."""
-    taken: dict[Path, Path] = {}
-    checked: list[Union[Arguments, tuple[Path, RunError]]] = []
+    jobs: Sequence[Union[Arguments, tuple[str, RunError]]]
+) -> list[Union[Arguments, tuple[str, RunError]]]:
+    """Of jobs that would write the same files only the first is done, and none that would write over its own mesh."""
+    taken: dict[Path, Arguments] = {}
+    checked: list[Union[Arguments, tuple[str, RunError]]] = []
     for job in jobs:
         if isinstance(job, Arguments):
-            place = job.output.resolve() / job.mesh.stem
-            first = taken.setdefault(place, job.mesh)
+            place = job.output.resolve() / job.name
+            first = taken.setdefault(place, job)
             reason = ""
-            if first is not job.mesh:
-                reason = f"{first} writes the same files; give the two different outputs"
-            elif "blend" in job.files and place.with_name(f"{place.name}.blend") == job.mesh.resolve():
+            if first is not job:
+                reason = f"{first.mesh if first.map_to is None else first.title} writes the same files; give the two " \
+                         "different outputs"
+            elif job.map_to is None and "blend" in job.files and \
+                    place.with_name(f"{place.name}.blend") == job.mesh.resolve():
                 reason = "its result would be written over it; choose another folder with --output"
             if reason:
-                job = (job.mesh, RunError(f"{job.mesh}: {reason}"))
+                job = (job.title, RunError(reason))
         checked.append(job)
     return checked

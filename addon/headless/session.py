@@ -4,31 +4,26 @@
 from __future__ import annotations
 
 import json
-import os
-import shutil
-import sys
-import tempfile
 import time
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Iterator, Optional
+from typing import Optional
 
 import bpy
 import numpy as np
 
 from .. import blender_mesh, core, faces, materials, pattern
 from ..sphere_map import sphere_of
-from .arguments import Arguments
+from .arguments import SAMPLE, Arguments
 from .errors import RunError
 from .exporters import check_export, export_object
 from .importers import empty_file, load_object
+from .mapping import Kept, Mapped, map_one
+from .output import Figures, folder_for, one_line, quiet, show_material, written
 from .picture import Subject, render_picture
 from .placing import Placed, embed_placed
 from .sample import make_creature
 from .tiling import make_tiling
 
-EXPECTED = (RunError, core.OrbifoldError, core.MeshFileError, blender_mesh.BlenderMeshError)
 IMAGES = 120  # of the tile, at most, but for finite groups: *532 has 120
 TRIANGLES_DRAWN = 1_600_000  # of all images of the tile in the picture, where each is a mesh of its own
 
@@ -56,39 +51,54 @@ class Unwrapped:
         kept = ("predicted", "measured", "symmetric")
         return {**self.result.report, "suggested": {name: getattr(suggestion, name) for name in kept}}
 
+    @property
+    def figures(self) -> Figures:
+        orbifold, distortion = self.report["orbifold"], self.report["distortion"]
+        return Figures(
+            *(orbifold["signature"], [cone["vertex"] for cone in orbifold["cones"]]),
+            *(self.report["certificate"]["flipped"], distortion["quasi_conformal_mean"], distortion["log_area_std"]),
+        )
+
+    def summary(self, arguments: Arguments, seconds: float) -> list[str]:
+        """What to tell the user."""
+        report, distortion = self.result.report, self.result.report["distortion"]
+        cones = ", ".join(map(str, self.figures.cones)) or "none"
+        return [
+            f"{self.name}: {report['mesh']['vertices']} vertices onto {report['orbifold']['signature']} "
+            f"({report['orbifold']['geometry']}), cones {cones}",
+            *_suggested(self.placed.suggestion),
+            f"certified: a bijection, {report['certificate']['flipped']} flipped triangles, mean quasi-conformal error "
+            f"{distortion['quasi_conformal_mean']:.3f}, area spread {distortion['log_area_std']:.2f}",
+            written(arguments, seconds),
+            *self.remarks,
+        ]
+
 
 def run(arguments: Arguments) -> list[str]:
     """What to tell the user. Raises one of EXPECTED, or finds a fault of ours."""
     started = time.perf_counter()
-    unwrapped = run_one(arguments)
-    return _summary(unwrapped, arguments, time.perf_counter() - started)
+    done = run_one(arguments)
+    return done.summary(arguments, time.perf_counter() - started)
 
 
-def run_one(arguments: Arguments, progress: Optional[core.Progress] = None) -> Unwrapped:
-    """The files are there when this returns; otherwise none of them, and one of EXPECTED is raised."""
+def run_one(
+    arguments: Arguments, progress: Optional[core.Progress] = None, kept: Optional[Kept] = None
+) -> Unwrapped | Mapped:
+    """The files are there when this returns; otherwise none of them, and one of EXPECTED is raised. `kept`: of the jobs
+    of one batch."""
     if arguments.signature is not None:
         core.parse_signature(arguments.signature)  # before the mesh is read, which can take long
+    exported = arguments.map_to or arguments.mesh
     if arguments.export:
-        check_export(arguments.mesh, arguments.output)
-        if arguments.mesh.suffix.lower() == ".blend" and "blend" not in arguments.files:
+        check_export(exported, arguments.output)
+        if exported.suffix.lower() == ".blend" and "blend" not in arguments.files:
             arguments = replace(arguments, files=("blend", *arguments.files))
+    if arguments.map_to is not None:
+        return map_one(arguments, progress, kept or Kept())
     with quiet():
         unwrapped = _unwrap(arguments, progress)
         _write_files(unwrapped, arguments)
     return unwrapped
-
-
-def one_line(reason: BaseException) -> str:
-    return " ".join(str(reason).split()) or type(reason).__name__
-
-
-def fault(reason: BaseException) -> str:
-    """A fault of ours, with its place."""
-    trace = reason.__traceback__
-    while trace.tb_next is not None:
-        trace = trace.tb_next
-    where = f"{Path(trace.tb_frame.f_code.co_filename).name}:{trace.tb_lineno}"
-    return f"internal fault in {where}: {type(reason).__name__}: {one_line(reason)}"
 
 
 # --------------------------------------------------------------------------------------------------- the work
@@ -97,7 +107,7 @@ def fault(reason: BaseException) -> str:
 def _unwrap(arguments: Arguments, progress: Optional[core.Progress]) -> Unwrapped:
     empty_file()
     if arguments.mesh is None:
-        name, obj = "creature", make_creature()
+        name, obj = SAMPLE, make_creature()
     else:
         name = arguments.mesh.stem
         obj = load_object(arguments.mesh.resolve(), arguments.object_name, core.read_mesh)
@@ -144,9 +154,9 @@ def _dress(obj: bpy.types.Object, arrays: blender_mesh.MeshArrays, result: core.
 def _write_files(unwrapped: Unwrapped, arguments: Arguments) -> None:
     """All files into a folder beside their places, then moved there."""
     output, wanted = arguments.output, arguments.files
-    with _folder_for(output) as part:
+    with folder_for(output) as part:
         places = {ending: part / f"{unwrapped.name}.{ending}" for ending in wanted}
-        _show_material()
+        show_material()
         if "blend" in wanted:
             bpy.ops.wm.save_as_mainfile(filepath=str(places["blend"]), copy=True, compress=True)
         if "json" in wanted:
@@ -158,27 +168,6 @@ def _write_files(unwrapped: Unwrapped, arguments: Arguments) -> None:
             export_object(unwrapped.obj, part / arguments.mesh.name)
         if "png" in wanted:
             render_picture(_subject(unwrapped), places["png"])
-        for path in sorted(part.iterdir()):
-            os.replace(path, output / path.name)
-
-
-@contextmanager
-def _folder_for(output: Path) -> Iterator[Path]:
-    """A folder inside `output` for files in the making; when that fails, nothing that was not there before stays."""
-    made = [folder for folder in (output, *output.parents) if not folder.exists()]
-    try:
-        output.mkdir(parents=True, exist_ok=True)
-        part = Path(tempfile.mkdtemp(prefix=".orbifold-", dir=output)).resolve()
-    except OSError as reason:
-        raise RunError(f"{output}: cannot be written to ({reason.strerror})") from reason
-    try:
-        yield part
-    except BaseException:
-        shutil.rmtree(part, ignore_errors=True)
-        for folder in made:
-            folder.rmdir()
-        raise
-    shutil.rmtree(part)
 
 
 def _subject(unwrapped: Unwrapped) -> Subject:
@@ -195,54 +184,8 @@ def _subject(unwrapped: Unwrapped) -> Subject:
                    pattern.palette(max(len(result.cones), pattern.LEAST_CENTRES)) ** 2.2, unwrapped.material, uv)
 
 
-def _show_material() -> None:
-    """Whoever opens the .blend sees the material, not grey."""
-    for screen in bpy.data.screens:
-        for area in screen.areas:
-            if area.type == "VIEW_3D":
-                area.spaces.active.shading.type = "MATERIAL"
-
-
-def _summary(unwrapped: Unwrapped, arguments: Arguments, seconds: float) -> list[str]:
-    report = unwrapped.result.report
-    cones = ", ".join(str(cone["vertex"]) for cone in report["orbifold"]["cones"]) or "none"
-    names = [f"{unwrapped.name}.{ending}" for ending in arguments.files]
-    if arguments.export and arguments.mesh.name not in names:
-        names.append(arguments.mesh.name)
-    files = ", ".join(str(arguments.output / name) for name in names) or "nothing"
-    return [
-        f"{unwrapped.name}: {report['mesh']['vertices']} vertices onto {report['orbifold']['signature']} "
-        f"({report['orbifold']['geometry']}), cones {cones}",
-        *_suggested(unwrapped.placed.suggestion),
-        f"certified: a bijection, {report['certificate']['flipped']} flipped triangles, mean quasi-conformal error "
-        f"{report['distortion']['quasi_conformal_mean']:.3f}, area spread {report['distortion']['log_area_std']:.2f}",
-        f"wrote {files} in {seconds:.1f} s",
-        *unwrapped.remarks,
-    ]
-
-
 def _suggested(suggestion: Optional[core.Suggestion]) -> list[str]:
     if suggestion is None:
         return []
     spread = "measured spread of areas and angles" if suggestion.measured else "predicted area spread"
     return [f"the cones were suggested: {spread} {suggestion.predicted:.2f}"]
-
-
-@contextmanager
-def quiet() -> Iterator[None]:
-    """Keeps Blender's own chatter (imports, saves, render lines), some of it written by C code, off both streams."""
-    sys.stdout.flush()
-    sys.stderr.flush()
-    kept = [os.dup(1), os.dup(2)]
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    try:
-        os.dup2(nowhere, 1)
-        os.dup2(nowhere, 2)
-        yield
-    finally:
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os.dup2(kept[0], 1)
-        os.dup2(kept[1], 2)
-        for descriptor in (*kept, nowhere):
-            os.close(descriptor)

@@ -59,6 +59,15 @@ ORB_API orb_status orb_wallpaper_apply(const orb_wallpaper *wallpaper, const orb
                                        const uint8_t *painted, const int32_t area[4], int32_t threads,
                                        orb_error *error);
 
+/* Fills the texels around the islands of any UV map, `texels` far, for filters and mipmaps that read beyond them: with
+ * what the image has where the surface goes on, across seams, each triangle laid against the one before it by a
+ * similarity. For the layout of an orbifold of the plane that is the group. At borders the colour beside them. The
+ * islands stay as they are. triangles [3*n_triangles] vertices of the mesh, which say what is across an edge; uv
+ * [6*n_triangles]; `repeats`: the image does, and islands may lie anywhere. Errors: ORB_BAD_ARGUMENT, and
+ * ORB_OUT_OF_MEMORY, after which a part is filled. */
+ORB_API orb_status orb_fill_seam_margin(const orb_image *image, bool repeats, int32_t n_triangles,
+                                        const int32_t *triangles, const double *uv, int32_t texels, orb_error *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -14,7 +14,7 @@ from test_run import open_sphere, sphere_mesh, write_obj
 
 SCRIPTS = (
     "registration.py", "picking.py", "unwrapping.py", "orbifolds.py", "suggesting.py", "seeing.py", "bad_input.py",
-    "checking.py", "objects.py", "transferring.py", "painting.py",
+    "checking.py", "objects.py", "transferring.py", "cutting.py", "painting.py",
 )
 
 
@@ -40,11 +40,14 @@ def test_the_command_of_the_installed_add_on(home: Home, tmp_path: Path) -> None
     meshes = [write_obj(tmp_path / "a.obj", *sphere_mesh()), write_obj(tmp_path / "b.obj", *open_sphere())]
     module = "bl_ext.user_default.orbifold_uv"
     command = [home.blender, "--factory-startup", "--addons", module, "--command", "orbifold"]
-    for words, status in ((meshes[:1], 0), (meshes, 1)):
-        options = ["--orbifold", "442", "--files", "json", "--output", str(tmp_path / "out")]
+    other = write_obj(tmp_path / "c.obj", *sphere_mesh())
+    to_other = ["--cones", "0,100,250", "--map-to", other, "--map-cones", "0,100,250", "--transfer", "heat"]
+    for words, status in ((meshes[:1], 0), (meshes, 1), ([meshes[0], *to_other], 0)):
+        options = ["--orbifold", "442", "--files", "blend,json", "--output", str(tmp_path / "out")]
         done = subprocess.run([*command, *map(str, words), *options], capture_output=True, text=True, timeout=300,
                               env=home.environment)
         assert done.returncode == status, done.stdout + done.stderr
         assert (tmp_path / "out" / "a.json").is_file()
         assert ("orbifold error: 1 of 2 meshes failed: b.obj" in done.stderr) == (status == 1), done.stderr
-    assert "1 of 2 meshes done" in done.stdout
+        assert ("1 of 2 meshes done" in done.stdout) == (status == 1)
+    assert (tmp_path / "out" / "c.blend").is_file()

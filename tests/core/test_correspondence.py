@@ -6,6 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
+from conftest import SHARED
 from meshes import far_apart, icosphere, subdivided
 from surfaces import bare
 
@@ -82,6 +83,33 @@ def test_no_face_is_drawn_from_one_side_of_a_seam_to_the_other(kind):
     assert 0 < len(crossing) < 0.12 * len(target[1])
     off = np.abs(middles @ normal) if kind == "islands" else np.where(middles[:, 0] < 0, np.abs(middles[:, 1]), 1.0)
     assert off[crossing][~poles[crossing]].max() < 0.4, "only faces near the seam cross it"
+
+
+def spot_with_uv():
+    """Its mesh, and its UV map as a mesh in the plane with the same triangles."""
+    rows = [line.split() for line in (SHARED / "meshes" / "spot.obj").read_text().splitlines()]
+    points, places = (np.array([row[1:] for row in rows if row[:1] == [kind]], float) for kind in ("v", "vt"))
+    corners = np.array([[corner.split("/")[:2] for corner in row[1:]] for row in rows if row[:1] == ["f"]], int) - 1
+    return (points, corners[:, :, 0]), (places[:, :2], corners[:, :, 1])
+
+
+@pytest.mark.skipif(not (SHARED / "meshes" / "spot.obj").is_file(), reason="../shared/meshes/spot.obj is not there")
+@pytest.mark.parametrize("finer", [True, False])
+def test_spot_s_uv_map_between_two_subdivisions(finer):
+    """The surfaces are one, so the answer is known: interpolated, or what was interpolated. The UVs of a mesh's edges
+    are 0.012 long, those of the subdivided one's half as long."""
+    meshes, maps = ([one, subdivided(*one)] for one in spot_with_uv())
+    order = slice(None) if finer else slice(None, None, -1)
+    (source, target), uv = meshes[order], [points[places].reshape(-1, 2) for points, places in maps[order]]
+    picked = far_apart(*meshes[0], 5)
+    picked = picked[core.landmark_sequence(*meshes[0], picked)]
+    found, crossing = between(source, target, picked, picked, "22222").of_uv(uv[0])
+    off = np.linalg.norm(found - uv[1], axis=1).reshape(-1, 3)
+    sound = np.ones(len(off), bool)
+    sound[crossing] = False
+    assert off[sound].max() < 0.01 and np.quantile(off[sound], 0.95) < 0.0025 and np.median(off[sound]) < 0.0005
+    assert 0.03 < len(crossing) / len(off) < 0.13
+    assert off.max() < 0.02, "also those that cross a seam continue an island"
 
 
 def test_an_island_s_map_is_continuous_where_there_is_no_seam():

@@ -64,6 +64,22 @@ TEST(out_of_memory_leaves_the_image_as_it_was) {
     }
 }
 
+TEST(out_of_memory_while_seams_are_filled) {
+    const int32_t corners[6] = {0, 1, 2, 0, 2, 3};
+    const orb_image image = {MOST, MOST, 4, ORB_TEXEL_FLOAT, pixels};
+    orb_error error;
+    for (long number = 0; number < LAST; number++) {
+        allocations = 0;
+        failing = number;
+        orb_status status = orb_fill_seam_margin(&image, true, 2, corners, triangles, 20, &error);
+        failing = -1;
+        CHECK(status == ORB_OK ? number > 3 : status == ORB_OUT_OF_MEMORY && error.message[0]);
+        if (status == ORB_OK)
+            return;
+    }
+    CHECK(!"it comes to an end");
+}
+
 TEST(images_of_all_sizes) {
     orb_error error;
     fill();

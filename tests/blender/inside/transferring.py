@@ -162,6 +162,44 @@ def check_all_of_it_comes_over_to_the_same_surface():
         assert "orbifold_cone" in target.data.attributes and len(picked(target)) == count, "its own landmarks"
 
 
+def face_middles(obj):
+    middles = np.empty(3 * len(obj.data.polygons), np.float32)
+    obj.data.polygons.foreach_get("center", middles)
+    return middles.reshape(-1, 3)
+
+
+def check_attributes_of_faces():
+    """On the same surface, on a finer one, and of one component only; those of edges stay."""
+    off = dict(groups=False, colours=False, uv_maps=False)
+    kinds = {"middles": "FLOAT_VECTOR", "number": "INT", "upper": "BOOLEAN", "height": "FLOAT"}
+    for make, settings in ((blob, {}), (quad_blob, {}), (quad_blob, {"shuffled": False, "subdivided": True})):
+        source, target, _ = pair(make, 4, **settings)
+        middles, edges = face_middles(source), len(source.data.edges)
+        numbers = np.arange(len(middles))[:, None]
+        rows = {"middles": middles, "number": numbers, "upper": middles[:, 2:] > 0, "height": middles[:, 2:]}
+        for name, kind in kinds.items():
+            blender_mesh.write_attribute(source.data, name, "FACE", kind, rows[name], np.ones(len(middles), bool))
+        blender_mesh.write_attribute(source.data, "of edges", "EDGE", "INT", np.ones((edges, 1)), np.ones(edges, bool))
+        bm = bmesh.new()
+        bm.from_mesh(target.data)
+        bmesh.ops.create_icosphere(bm, subdivisions=1, radius=0.3)  # of 20 faces
+        n_faces = len(bm.faces)
+        bm.to_mesh(target.data)
+        bm.free()
+        own = face_middles(target)[: n_faces - 20]
+        _, said = reported(bpy.ops.object.orbifold_transfer, **off)
+        assert "Copy: 4 attributes; mean" in said, said
+        found = {name: at_vertices(target, name) for name in kinds}
+        assert all(target.data.attributes[name].domain == "FACE" for name in kinds) and len(found["upper"]) == n_faces
+        known = np.linalg.norm(middles[:, None] - own, axis=2).argmin(0)
+        right = found["number"][: len(own), 0] == known
+        assert right.all() if not settings else right.mean() > 0.9, right.mean()
+        for name in kinds:
+            expected = rows[name][found["number"][: len(own), 0]]
+            assert (found[name][: len(own)] == expected).all() and not found[name][len(own):].any(), name
+        assert "of edges" not in target.data.attributes
+
+
 def check_only_what_is_ticked():
     source, target, _ = pair()
     filled(source)
@@ -283,6 +321,39 @@ def check_several_targets_and_the_heat_map():
         assert np.abs(at_vertices(obj, "orbifold_map")).max() < 1e-3
     bpy.context.view_layer.objects.active = target
     assert bpy.ops.mesh.orbifold_hide_distortion() == {"FINISHED"} and "Orbifold Map" not in target.data.attributes
+
+
+def areas_about(obj, points):
+    """(n,) of all triangles around each vertex, where the vertices are at these points."""
+    triangles = blender_mesh.read_mesh(obj.data).triangles
+    p, q, r = points[triangles].transpose(1, 0, 2)
+    return np.bincount(triangles.ravel(), np.repeat(np.linalg.norm(np.cross(q - p, r - p), axis=1), 3))
+
+
+def check_the_heat_map_of_areas():
+    """Compared with the areas about the vertices, on the target and on the form that the map gives it."""
+    source, target, place = pair(lambda: blob(4), 5)
+    off = dict(groups=False, attributes=False, colours=False, uv_maps=False)
+    heat = part("heat")
+    for stretch in (3, [3, 3, 12]):
+        target.shape_key_clear()
+        moved = (positions(source) * stretch)[np.argsort(place)]
+        target.data.vertices.foreach_set("co", moved.astype(np.float32).ravel())
+        target.data.update()
+        bpy.ops.object.orbifold_transfer(heat=True, heat_area=True, form=True, **off)
+        assert {"Orbifold Map", "Orbifold Map Area"} <= {one.name for one in target.data.color_attributes}
+        assert heat.shown(target.data) is heat.MAP_AREA, "of both the last one is shown"
+        form = blender_mesh.read_shape_key(target, "Form of Blob")
+        areas = [areas_about(target, points) for points in (positions(target), form)]
+        known = np.log(areas[0] / areas[0].sum() * areas[1].sum() / areas[1])
+        found = at_vertices(target, "orbifold_map_area")[:, 0]
+        assert np.abs(found - known).max() < 0.2 * np.abs(known).max() + 1e-3, np.abs(found - known).max()
+        assert (np.abs(known).max() > 0.3) == (stretch != 3), np.abs(known).max()
+    bpy.ops.object.orbifold_transfer(heat=True, **off)
+    assert heat.shown(target.data) is heat.MAP and "Orbifold Map Area" in target.data.attributes
+    bpy.context.view_layer.objects.active = target
+    assert bpy.ops.mesh.orbifold_hide_distortion() == {"FINISHED"}
+    assert not {"Orbifold Map", "Orbifold Map Area", "orbifold_map_area"} & set(target.data.attributes.keys())
 
 
 def pictured(obj, size=256):
@@ -477,11 +548,17 @@ def check_equal_places_have_equal_colours():
     overlay = part("overlay")
 
     def colours(obj):
-        return overlay._cone_colours(obj.data, tuple(picked(obj)))
+        (compared, hues) = overlay._compared([source, target])
+        assert compared == [source, target]
+        return overlay._cone_colours(obj.data, tuple(picked(obj)), hues)
 
     assert np.allclose(colours(source), colours(target))
     set_cones(source, "2" * FEW, [vertex for vertex, _ in picked(source)][::-1])
     assert np.allclose(colours(source), colours(target)), "those of the list, not of an earlier layout"
+    set_cones(target, "2" * 4, [vertex for vertex, _ in picked(target)][:4])
+    assert np.allclose(colours(source)[:4], colours(target)), "also while some are missing"
+    target.select_set(False)
+    assert overlay._compared([source, target]) == ([], 0)
 
 
 def check_the_api():
