@@ -14,7 +14,8 @@ bl_info = {
 import bpy
 
 from . import (
-    cli, handlers, live, operators, panels, preferences, previews, properties, surface, transfer_settings, viewing,
+    cli, handlers, live, operators, painting, panels, preferences, previews, properties, surface, transfer_settings,
+    viewing,
 )
 from .api import OrbifoldError, check, sphere, suggest, transfer, unwrap
 from .panels import menus
@@ -33,11 +34,13 @@ def register() -> None:
     viewing.register()
     transfer_settings.register()
     live.register()
+    painting.register()
     cli.register()
 
 
 def unregister() -> None:
     cli.unregister()
+    painting.unregister()
     live.unregister()
     transfer_settings.unregister()
     viewing.unregister()

@@ -211,6 +211,8 @@ def write_uv_of_loops(mesh: bpy.types.Mesh, uv: np.ndarray, among: np.ndarray, n
 
 def _set_uv(layer: bpy.types.MeshUVLoopLayer, corners: np.ndarray) -> None:
     if hasattr(layer, "uv"):
+        if len(corners):
+            layer.data[0]  # version 4.3 would write to the map of the mesh that this one was copied from, too
         layer.uv.foreach_set("vector", corners.ravel())
     else:
         layer.data.foreach_set("uv", corners.ravel())

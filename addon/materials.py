@@ -39,6 +39,12 @@ def image_material(name: str, pixels: np.ndarray, chart: str) -> bpy.types.Mater
     """A material that shows pixels (h, w, 4) by the UV map `Orbifold`, which is in this chart; an earlier one of this
     name is replaced."""
     material = bpy.data.materials.get(name) or bpy.data.materials.new(name)
+    show_image(material, _image(name, pixels), "REPEAT" if chart in pattern.REPEATING else "EXTEND")
+    return material
+
+
+def show_image(material: bpy.types.Material, image: bpy.types.Image, extension: str) -> None:
+    """By the UV map `Orbifold`, in place of what the material showed. The image texture becomes the active node."""
     blender_mesh.enable_nodes(material)
     tree = material.node_tree
     tree.nodes.clear()
@@ -47,13 +53,12 @@ def image_material(name: str, pixels: np.ndarray, chart: str) -> bpy.types.Mater
     texture = _node(tree, "ShaderNodeTexImage", 0)
     coordinates = _node(tree, "ShaderNodeUVMap", -200)
     coordinates.uv_map = blender_mesh.UV_MAP
-    texture.extension = "REPEAT" if chart in pattern.REPEATING else "EXTEND"
-    texture.image = _image(name, pixels)
+    texture.image, texture.extension = image, extension
     shader.inputs["Roughness"].default_value = 0.6
     tree.links.new(coordinates.outputs["UV"], texture.inputs["Vector"])
     tree.links.new(texture.outputs["Color"], shader.inputs["Base Color"])
     tree.links.new(shader.outputs["BSDF"], output.inputs["Surface"])
-    return material
+    tree.nodes.active = texture
 
 
 def assign(obj: bpy.types.Object, material: bpy.types.Material, faces: Optional[np.ndarray] = None) -> None:

@@ -211,12 +211,13 @@ def painting() -> Generator:
 
 
 def stroke() -> Generator:
-    """A stroke of the brush across the cut."""
+    """A stroke of the brush across the cut, with Symmetric Painting."""
     yield from petals()
     image, region = bpy.data.images["Petals"], region_of("VIEW_3D")
     before = pixels_of(image)
     with inside():
         bpy.ops.object.mode_set(mode="TEXTURE_PAINT")
+        bpy.context.window_manager.orbifold_symmetric_painting = True
         bpy.context.tool_settings.image_paint.brush.color = (1.0, 1.0, 1.0)
         bpy.ops.paint.image_paint(stroke=[
             {"name": "", "location": (0, 0, 0), "mouse": place, "mouse_event": place, "x_tilt": 0.0, "y_tilt": 0.0,
@@ -228,6 +229,7 @@ def stroke() -> Generator:
     followed = [int((changed & np.rot90(changed, quarter)).sum()) for quarter in (1, 2, 3)]
     print(f"picture: {changed.sum()} pixels painted, of which their copies have {followed}", flush=True)
     yield from photograph(f"{folder}/stroke.png")
+    bpy.context.window_manager.orbifold_symmetric_painting = False
     bpy.ops.object.mode_set(mode="OBJECT")
     area_of("VIEW_3D").spaces.active.show_region_ui = True
     yield

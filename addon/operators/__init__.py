@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Operators, one idea a file."""
 
-from . import check, cones, fixed_boundary, sliding, sphere, stretch, suggesting, transfer, unwrap, viewing
+from . import check, cones, fixed_boundary, painting, sliding, sphere, stretch, suggesting, transfer, unwrap, viewing
 
 CLASSES = (
     *cones.CLASSES,
@@ -14,4 +14,5 @@ CLASSES = (
     *sliding.CLASSES,
     *check.CLASSES,
     *transfer.CLASSES,
+    *painting.CLASSES,
 )

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sidebar and menus."""
 
-from . import check, menus, sidebar, transfer, viewing
+from . import check, menus, painting, sidebar, transfer, viewing
 
-CLASSES = (*menus.CLASSES, *sidebar.CLASSES, *viewing.CLASSES, *transfer.CLASSES, *check.CLASSES)
+CLASSES = (*menus.CLASSES, *sidebar.CLASSES, *viewing.CLASSES, *painting.CLASSES, *transfer.CLASSES, *check.CLASSES)

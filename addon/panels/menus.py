@@ -101,17 +101,25 @@ def draw_submenu(self, _context: bpy.types.Context) -> None:
     self.layout.menu(VIEW3D_MT_orbifold.bl_idname)
 
 
+def draw_image_entries(self, _context: bpy.types.Context) -> None:
+    self.layout.separator()
+    self.layout.operator_menu_enum("image.orbifold_symmetrize", "source")
+    self.layout.operator("image.orbifold_new")
+
+
 MENU_GROUPS = (
     ("uv.orbifold_unwrap", "uv.orbifold_fixed_boundary", "object.orbifold_sphere"),
     ("mesh.orbifold_suggest_cones", "mesh.orbifold_add_cones", "mesh.orbifold_remove_cone", "mesh.orbifold_move_cone",
      "mesh.orbifold_clear_cones", "mesh.orbifold_jump_to_cone"),
     ("mesh.orbifold_show_stretch", "mesh.orbifold_show_distortion", "object.orbifold_tile_preview",
      "object.orbifold_pattern"),
+    ("image.orbifold_symmetrize", "image.orbifold_new"),
     ("object.orbifold_transfer", "object.orbifold_suggest_order"),
     ("mesh.orbifold_hide_distortion", "mesh.orbifold_cancel_live", "mesh.orbifold_check"),
 )
 UV_MENUS = ("VIEW3D_MT_uv_map", "IMAGE_MT_uvs")
 OBJECT_MENUS = ("VIEW3D_MT_object",)
+IMAGE_MENUS = ("IMAGE_MT_image",)
 CLASSES = (MESH_MT_orbifold_signatures, VIEW3D_MT_orbifold)
 
 
@@ -120,6 +128,8 @@ def register() -> None:
         getattr(bpy.types, name).append(draw_entries)
     for name in OBJECT_MENUS:
         getattr(bpy.types, name).append(draw_submenu)
+    for name in IMAGE_MENUS:
+        getattr(bpy.types, name).append(draw_image_entries)
 
 
 def unregister() -> None:
@@ -127,3 +137,5 @@ def unregister() -> None:
         getattr(bpy.types, name).remove(draw_entries)
     for name in OBJECT_MENUS:
         getattr(bpy.types, name).remove(draw_submenu)
+    for name in IMAGE_MENUS:
+        getattr(bpy.types, name).remove(draw_image_entries)

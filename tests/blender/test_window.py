@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """In a real window, on a virtual screen: a new user's clicks and keys from the zip to a file that is opened again
 (inside/new_user.py); F3 (inside/searching_window.py); suggestions (inside/suggesting_window.py); a transfer
-(inside/transferring_window.py); what is drawn, and Orbifold Live by keys (inside/seeing_window.py). Judged by what the
-scripts write; needs xvfb and imagemagick.
+(inside/transferring_window.py); what is drawn, and Orbifold Live by keys (inside/seeing_window.py); strokes of the
+brush (inside/painting_window.py). Judged by what the scripts write; needs xvfb and imagemagick.
 
     ORBIFOLD_SCREENSHOTS    a folder for pictures of the screen"""
 
@@ -46,6 +46,11 @@ def searched(home: Home) -> dict:
 @pytest.fixture(scope="module")
 def shown(home: Home) -> dict:
     return in_window(home, "seeing_window.py")
+
+
+@pytest.fixture(scope="module")
+def painted(home: Home) -> dict:
+    return in_window(home, "painting_window.py")
 
 
 def in_window(home: Home, script: str, *more: str) -> dict:
@@ -156,3 +161,29 @@ def test_an_impossible_signature_is_explained_and_keeps_the_uvs(shown: dict) -> 
     reason, change = shown["impossible"]
     assert "44" in reason and change < 1e-6
     assert shown["possible_again"] is None
+
+
+def test_a_stroke_on_the_mesh_is_repeated_at_its_copies(painted: dict) -> None:
+    assert min(painted["changed"]) > 500 and painted["turned"] == [True, True]
+    assert painted["symmetric"] and painted["problem"] is None
+
+
+def test_one_undo_takes_a_stroke_and_its_copies_back_and_one_redo_brings_them_again(painted: dict) -> None:
+    assert painted["undone"] == [[1], [1], [0], [1], [1], [2]]  # in the middle the undo step of a setting
+
+
+def test_a_stroke_on_the_image_is_repeated_and_undone(painted: dict) -> None:
+    assert painted["on_image"][0] > 500 and painted["on_image"][1] and painted["on_image_undone"]
+
+
+def test_strokes_and_undos_that_follow_at_once(painted: dict) -> None:
+    assert painted["hasty"] == [True, True] and painted["hasty_undone"] and painted["hasty_undone_all"]
+
+
+def test_symmetrize_image_is_undone_at_once_in_paint_mode_and_in_object_mode(painted: dict) -> None:
+    assert painted["not_repeated"]
+    assert painted["symmetrized_TEXTURE_PAINT"] == painted["symmetrized_OBJECT"] == [True, True, True]
+
+
+def test_another_file_switches_symmetric_painting_off(painted: dict) -> None:
+    assert painted["after_loading"] == [False, 0]

@@ -46,6 +46,7 @@ def check_enabling_adds_operators_menus_and_the_property():
     assert set(wanted.split()) <= now["operators"]
     assert "orbifold" in now["mesh"]
     assert "orbifold_view" in now["scene"] and "orbifold_live" in now["window manager"]
+    assert "orbifold_symmetric_painting" in now["window manager"]
     assert all(now["menus"][name] == before["menus"][name] + 1 for name in MENUS), now["menus"]
     assert {"VIEW3D_PT_orbifold", "IMAGE_PT_orbifold"} <= now["types"]
 
@@ -118,6 +119,8 @@ MISSING = {
     "object.orbifold_sphere": "Pick at least two cones first",
     "object.orbifold_tile_preview": "use Orbifold Unwrap first",
     "object.orbifold_pattern": "use Orbifold Unwrap first",
+    "image.orbifold_symmetrize": "use Orbifold Unwrap first",
+    "image.orbifold_new": "use Orbifold Unwrap first",
     "object.orbifold_transfer": "Select the meshes that are to get something too",
     "object.orbifold_suggest_order": "Select the meshes that are to get something too",
 }
