@@ -58,6 +58,19 @@ def differing(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     return (one.view(whole) != other.view(whole)).any(2)
 
 
+def changes(pixels: np.ndarray, before: np.ndarray) -> np.ndarray:
+    """(height, width) uint8 how much the pixels of two images differ, 0 only where not at all; 255 from white to black."""
+    found = differing(pixels, before).astype(np.uint8)
+    area = bounds(found)
+    if area is not None:
+        x, y, width, height = area
+        part = np.s_[y : y + height, x : x + width]
+        most = 255 if pixels.dtype == np.uint8 else 1
+        size = np.abs(pixels[part].astype(np.float32) - before[part]).max(2) * (255 / most)
+        found[part] *= np.clip(np.nan_to_num(size, nan=255.0), 1, 255).astype(np.uint8)
+    return found
+
+
 def bounds(mask: np.ndarray) -> Optional[tuple[int, int, int, int]]:
     """x, y, width, height of what is there of a mask (height, width); None where nothing is."""
     rows = np.flatnonzero(mask.any(1))

@@ -118,12 +118,12 @@ def forget_layouts() -> None:
 
 
 def painted_since(image: bpy.types.Image, pixels: np.ndarray) -> Optional[np.ndarray]:
-    """(height, width) bool where the pixels, which are the image's, are not those of the last stroke or Symmetrize
+    """(height, width) uint8 how much the pixels, which are the image's, are not those of the last stroke or Symmetrize
     Image; None where those are not known."""
     before = _State.kept.get(image.name_full)
     if before is None or before.shape != pixels.shape or before.dtype != pixels.dtype:
         return None
-    return image_pixels.differing(pixels, before)
+    return image_pixels.changes(pixels, before)
 
 
 def note_written(image: bpy.types.Image, pixels: np.ndarray) -> None:

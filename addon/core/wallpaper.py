@@ -59,8 +59,8 @@ class Wallpaper:
     ) -> None:
         """Makes (height, width, channels) uint8, uint16 or float32, first row at v = 0, invariant, in place.
 
-        source  "tile": copies become what the tile has; "all": their mean; "painted": what is where `painted` (height,
-                width) is not 0, on the tile if there too, and copies of other texels stay as they are
+        source  "tile": copies become what the tile has; "all": their mean; "painted": what the one has where `painted`
+                (height, width), bool or uint8, how much was painted, is greatest, and where it is 0 on all they stay
         area    x, y, width, height: what is outside of it is not painted. The time is in proportion to it
         """
         if source not in binding.SOURCES:
@@ -68,7 +68,9 @@ class Wallpaper:
         check_pixels(pixels)
         mask = None
         if source == "painted":
-            mask = np.zeros(0, np.uint8) if painted is None else np.ascontiguousarray(np.asarray(painted) != 0, np.uint8)
+            mask = np.zeros(0, np.uint8) if painted is None else np.ascontiguousarray(painted)
+            if mask.dtype != np.uint8:
+                mask = (mask != 0).astype(np.uint8)
             if mask.shape != pixels.shape[:2]:
                 raise OrbifoldError(
                     "ORB_BAD_ARGUMENT", f"what is painted has the shape {mask.shape}; give one number for each of "

@@ -48,10 +48,10 @@ ORB_API orb_wallpaper_view orb_wallpaper_look(const orb_wallpaper *wallpaper);
 typedef enum orb_source {
     ORB_FROM_TILE = 0, /* copies become what the tile has */
     ORB_FROM_ALL,      /* all copies become their mean */
-    ORB_FROM_PAINTED   /* copies become what was painted on one of them, on the tile if there too; others stay */
+    ORB_FROM_PAINTED   /* copies become what was painted on the one of them on which most was; others stay */
 } orb_source;
 
-/* Makes the image invariant, in place. painted [height][width], 0: not painted; NULL unless ORB_FROM_PAINTED. area: x,
+/* Makes the image invariant, in place. painted [height][width]: how much, 0: not at all; NULL unless ORB_FROM_PAINTED. area: x,
  * y, width, height of the part that is looked at for what has been painted, for the time in proportion to it; NULL: all.
  * `threads` at most. Errors: ORB_BAD_ARGUMENT (another size, channels below 1 or above 4, an area that is not in the
  * image), ORB_OUT_OF_MEMORY; then the image is as it was. */

@@ -155,9 +155,9 @@ ALWAYS_INLINE void find_differences_of(const orb_painting *work, int32_t first, 
 }
 OF_EACH_KIND(find_differences)
 
-/* What copies of a texel of the tile say of it. */
+/* What copies of a texel of the tile say of it: a sum with its weight, and how much was painted. */
 typedef struct orb_sum {
-    float value[MOST_CHANNELS], weight;
+    float value[MOST_CHANNELS], weight, strength;
     bool differs;
 } orb_sum;
 
@@ -170,31 +170,38 @@ ALWAYS_INLINE void add_painted(const orb_painting *work, orb_image image, size_t
     load(&image, texel, value);
     sum->differs = sum->differs || (work->differs ? work->differs[number] != 0 : !equal(image, value, own));
     sum->weight += weight;
+    sum->strength += work->painted ? weight * (float)work->painted[texel] : 0;
     for (int c = 0; c < image.channels; c++)
         sum->value[c] += weight * value[c];
 }
 
-/* The sum of what is painted of a texel of the tile and of its copies. What is painted on the tile itself comes first,
- * for painting spills a little over its border. */
+ALWAYS_INLINE void add_copy(const orb_painting *work, orb_image image, const orb_move *move, int32_t x, int32_t y,
+                            const float own[MOST_CHANNELS], orb_sum *sum) {
+    const orb_wallpaper *paper = work->paper;
+    double at[2];
+    if (move->whole) {
+        add_painted(work, image, wallpaper_moved(paper, move, x, y), 1, own, sum);
+        return;
+    }
+    wallpaper_move(move, x, y, at);
+    const orb_stencil stencil = wallpaper_stencil(paper, at);
+    for (int c = 0; c < 4; c++)
+        add_painted(work, image, stencil.texel[c], stencil.weight[c], own, sum);
+}
+
+/* The sum of a texel of the tile and all its copies, or the one of them on which most was painted: the tile's own where
+ * another is not above it, for painting spills a little over its border. */
 ALWAYS_INLINE orb_sum painted_of(const orb_painting *work, orb_image image, int32_t x, int32_t y,
                                  const float own[MOST_CHANNELS]) {
     const orb_wallpaper *paper = work->paper;
-    orb_sum sum = {{0, 0, 0, 0}, 0, false};
+    orb_sum sum = {{0, 0, 0, 0}, 0, 0, false};
     add_painted(work, image, texel_at(paper, y, x), 1, own, &sum);
     sum.differs = false;
-    if (sum.weight > 0 && work->painted)
-        return sum;
     for (int32_t k = 1; k < paper->order; k++) {
-        const orb_move *move = &paper->moves[k];
-        double at[2];
-        if (move->whole) {
-            add_painted(work, image, wallpaper_moved(paper, move, x, y), 1, own, &sum);
-            continue;
-        }
-        wallpaper_move(move, x, y, at);
-        const orb_stencil stencil = wallpaper_stencil(paper, at);
-        for (int c = 0; c < 4; c++)
-            add_painted(work, image, stencil.texel[c], stencil.weight[c], own, &sum);
+        orb_sum copy = {{0, 0, 0, 0}, 0, 0, false};
+        add_copy(work, image, &paper->moves[k], x, y, own, work->painted ? &copy : &sum);
+        if (copy.strength > sum.strength)
+            sum = copy;
     }
     return sum;
 }

@@ -161,6 +161,20 @@ def test_of_a_stroke_over_the_border_the_tile_s_part_counts():
     assert pixels[15, 4] == pixels[16, 27] == 0.25
 
 
+@pytest.mark.parametrize("name", ["442", "632"])
+def test_where_a_soft_stroke_runs_over_its_own_copy_the_stronger_part_counts(name):
+    motions = GROUPS[name][0]
+    wallpaper, at = core.Wallpaper(96, 96, motions), middles(96, 96)
+    strength = np.exp(-(((at - 0.03) % 1 - 0.5) ** 2).sum(2) / 0.02)  # over all that lies around a centre of turns
+    strength[strength < 0.1] = 0
+    pixels = np.repeat(strength[:, :, None], 4, 2).astype(np.float32)
+    wallpaper.symmetrize(pixels, "painted", np.uint8(255 * strength))
+    moved = [at @ motion[:, :2].T + motion[:, 2] for motion in wallpaper.motions]
+    strongest = np.max([looked_up(strength[:, :, None], one.reshape(-1, 2)) for one in moved], 0).reshape(96, 96)
+    inside = strongest > 0.2
+    assert np.abs(pixels[:, :, 0] - strongest)[inside].max() < 0.05
+
+
 def test_number_of_threads_changes_nothing():
     for name in ("442", "632"):
         pixels = [noise(90, 70) for _ in range(2)]
