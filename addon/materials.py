@@ -38,7 +38,11 @@ def image_size(layout: FaceLayout) -> int:
 def image_material(name: str, pixels: np.ndarray, chart: str) -> bpy.types.Material:
     """A material that shows pixels (h, w, 4) by the UV map `Orbifold`, which is in this chart; an earlier one of this
     name is replaced."""
-    material = bpy.data.materials.get(name) or bpy.data.materials.new(name)
+    return fill_material(bpy.data.materials.get(name) or bpy.data.materials.new(name), _image(name, pixels), chart)
+
+
+def fill_material(material: bpy.types.Material, image: bpy.types.Image, chart: str) -> bpy.types.Material:
+    """The material, which shows the image by the UV map `Orbifold`, and nothing else."""
     blender_mesh.enable_nodes(material)
     tree = material.node_tree
     tree.nodes.clear()
@@ -48,7 +52,7 @@ def image_material(name: str, pixels: np.ndarray, chart: str) -> bpy.types.Mater
     coordinates = _node(tree, "ShaderNodeUVMap", -200)
     coordinates.uv_map = blender_mesh.UV_MAP
     texture.extension = "REPEAT" if chart in pattern.REPEATING else "EXTEND"
-    texture.image = _image(name, pixels)
+    texture.image = image
     shader.inputs["Roughness"].default_value = 0.6
     tree.links.new(coordinates.outputs["UV"], texture.inputs["Vector"])
     tree.links.new(texture.outputs["Color"], shader.inputs["Base Color"])

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Operators, one idea a file."""
 
-from . import check, cones, fixed_boundary, sliding, sphere, stretch, suggesting, transfer, unwrap, viewing
+from . import (
+    check, cones, fixed_boundary, ordinary, seam_margin, sliding, sphere, stretch, suggesting, transfer, unwrap,
+    viewing, wallpaper,
+)
 
 CLASSES = (
     *cones.CLASSES,
@@ -14,4 +17,7 @@ CLASSES = (
     *sliding.CLASSES,
     *check.CLASSES,
     *transfer.CLASSES,
+    *seam_margin.CLASSES,
+    *wallpaper.CLASSES,
+    *ordinary.CLASSES,
 )

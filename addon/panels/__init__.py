@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Sidebar and menus."""
 
-from . import check, menus, sidebar, transfer, viewing
+from . import check, images, menus, sidebar, transfer, viewing
 
-CLASSES = (*menus.CLASSES, *sidebar.CLASSES, *viewing.CLASSES, *transfer.CLASSES, *check.CLASSES)
+CLASSES = (
+    *menus.CLASSES, *sidebar.CLASSES, *viewing.CLASSES, *images.CLASSES, *transfer.CLASSES, *check.CLASSES,
+)

@@ -96,6 +96,12 @@ class VIEW3D_MT_orbifold(bpy.types.Menu):
                 layout.operator("mesh.orbifold_place_suggestion", text=text).index = index
 
 
+def draw_image_entries(self, _context: bpy.types.Context) -> None:
+    self.layout.separator()
+    self.layout.operator("image.orbifold_wallpaper")
+    self.layout.operator("image.orbifold_fill_seam_margin")
+
+
 def draw_submenu(self, _context: bpy.types.Context) -> None:
     self.layout.separator()
     self.layout.menu(VIEW3D_MT_orbifold.bl_idname)
@@ -107,11 +113,14 @@ MENU_GROUPS = (
      "mesh.orbifold_clear_cones", "mesh.orbifold_jump_to_cone"),
     ("mesh.orbifold_show_stretch", "mesh.orbifold_show_distortion", "object.orbifold_tile_preview",
      "object.orbifold_pattern"),
+    ("object.orbifold_pattern_image", "image.orbifold_wallpaper", "image.orbifold_fill_seam_margin",
+     "object.orbifold_bake"),
     ("object.orbifold_transfer", "object.orbifold_suggest_order"),
     ("mesh.orbifold_hide_distortion", "mesh.orbifold_cancel_live", "mesh.orbifold_check"),
 )
 UV_MENUS = ("VIEW3D_MT_uv_map", "IMAGE_MT_uvs")
 OBJECT_MENUS = ("VIEW3D_MT_object",)
+IMAGE_MENUS = ("IMAGE_MT_image",)
 CLASSES = (MESH_MT_orbifold_signatures, VIEW3D_MT_orbifold)
 
 
@@ -120,6 +129,8 @@ def register() -> None:
         getattr(bpy.types, name).append(draw_entries)
     for name in OBJECT_MENUS:
         getattr(bpy.types, name).append(draw_submenu)
+    for name in IMAGE_MENUS:
+        getattr(bpy.types, name).append(draw_image_entries)
 
 
 def unregister() -> None:
@@ -127,3 +138,5 @@ def unregister() -> None:
         getattr(bpy.types, name).remove(draw_entries)
     for name in OBJECT_MENUS:
         getattr(bpy.types, name).remove(draw_submenu)
+    for name in IMAGE_MENUS:
+        getattr(bpy.types, name).remove(draw_image_entries)

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Images that a group of the plane leaves as they are, from formulas and from any picture; arrays only, no bpy.
+
+An image is one period: the unit square of the UV map. Rows go upwards."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from . import baking, core, formulas
+
+FINER = 4  # points along each side of a texel, at which a formula is computed
+AT_ONCE = 2**20  # points
+LARGEST = 32768  # texels along a side
+
+Moves = list[Callable[[np.ndarray], np.ndarray]]
+
+
+def motions_of(moves: Moves) -> np.ndarray:
+    """(n, 2, 3) of affine motions that are given as functions of points (k, 2)."""
+    frame = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    images = np.array([move(frame) for move in moves]).reshape(-1, 3, 2)
+    return np.stack([images[:, 1] - images[:, 0], images[:, 2] - images[:, 0], images[:, 0]], 2)
+
+
+def size_for(width: int, motions: np.ndarray, sides: np.ndarray) -> tuple[int, int]:
+    """Width and height of an image: a square where the group takes its texels to texels, else one whose texels are
+    squares in the plane, where the period has these sides (2, 2)."""
+    if core.Wallpaper(16, 16, motions).exact:
+        return width, width
+    lengths = np.linalg.norm(sides, axis=1)
+    return width, int(np.clip(round(width * lengths[1] / lengths[0]), 1, LARGEST))
+
+
+def of_formula(
+    pattern: formulas.Pattern, width: int, height: int, origin: np.ndarray, dark: np.ndarray, light: np.ndarray
+) -> np.ndarray:
+    """(height, width, 4) float32: `dark` and `light` (3,) in the proportion that the pattern's two colours have in a
+    texel. The image's corner is at `origin` (2,) of the lattice's coordinates."""
+    share = np.empty((height, width), np.float32)
+    step = max(1, AT_ONCE // (width * FINER**2))
+    u = (np.arange(width * FINER) + 0.5) / (width * FINER)
+    for first in range(0, height, step):
+        rows = min(step, height - first)
+        v = (np.arange(first * FINER, (first + rows) * FINER) + 0.5) / (height * FINER)
+        points = np.stack(np.meshgrid(u, v), -1).reshape(-1, 2) + origin
+        chosen = formulas.value_at(pattern, points).reshape(rows, FINER, width, FINER) > 0
+        share[first : first + rows] = chosen.mean((1, 3))
+    pixels = np.ones((height, width, 4), np.float32)
+    pixels[:, :, :3] = share[:, :, None] * np.subtract(light, dark) + dark
+    return pixels
+
+
+def of_picture(
+    picture: np.ndarray, width: int, height: int, tile: np.ndarray, sides: np.ndarray, whole: bool = False
+) -> np.ndarray:
+    """(height, width, 4) float32: on the tile (m, 3, 2) what a picture (h, w, 4) float32 has that is laid over the
+    tile's bounding box; beside it, period by period, what is there. Not yet symmetric.
+
+    sides  (2, 2) of the period, in the plane: the picture keeps its proportions, and what of it is too wide or too high
+           is cut off
+    whole  nothing is cut off, the picture is stretched
+    """
+    low, extent = tile.reshape(-1, 2).min(0), np.ptp(tile.reshape(-1, 2), axis=0)
+    if not whole:
+        picture = _cut_to(picture, extent * np.linalg.norm(sides, axis=1))
+    texels = np.maximum(np.rint(extent * (width, height)).astype(int), 1)
+    fine = resized(picture, *np.minimum(texels, picture.shape[1::-1]))
+    places = np.stack(np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height), -1)
+    places = (low + (places - low) % 1).reshape(-1, 2)
+    for first, last in baking.portions(tile, width, height):
+        where, of, barycentric = baking.texels_of(tile[first:last], width, height)
+        places[where] = np.einsum("pc,pcd->pd", barycentric, tile[first:last][of])
+    half = 0.5 / np.array(fine.shape[1::-1])
+    inside = np.clip((places - low) / extent, half, 1 - half)  # its border does not repeat
+    pixels = np.empty((height * width, 4), np.float32)
+    for start in range(0, len(pixels), AT_ONCE):
+        pixels[start : start + AT_ONCE] = baking.sampled(fine, inside[start : start + AT_ONCE])
+    return pixels.reshape(height, width, 4)
+
+
+def _cut_to(picture: np.ndarray, extent: np.ndarray) -> np.ndarray:
+    """The largest part in the picture's middle that is wide and high in this proportion."""
+    height, width = picture.shape[:2]
+    scale = min(width / extent[0], height / extent[1])
+    w, h = (int(np.clip(round(scale * side), 1, most)) for side, most in zip(extent, (width, height)))
+    x, y = (width - w) // 2, (height - h) // 2
+    return picture[y : y + h, x : x + w]
+
+
+def resized(picture: np.ndarray, width: int, height: int) -> np.ndarray:
+    """(height, width, 4) of a picture that is not smaller: each texel is the mean of what it covers, by alpha."""
+    covering = picture.astype(np.float64)
+    covering[:, :, :3] *= covering[:, :, 3:]
+    for axis, count in ((0, height), (1, width)):
+        covering = _means(covering, count, axis)
+    alpha = covering[:, :, 3:]
+    covering[:, :, :3] = np.divide(covering[:, :, :3], alpha, out=np.zeros_like(covering[:, :, :3]), where=alpha > 0)
+    return covering
+
+
+def _means(values: np.ndarray, count: int, axis: int) -> np.ndarray:
+    """So many means along an axis, of equal parts of it, which begin and end anywhere in an element."""
+    length = values.shape[axis]
+    if count == length:
+        return values
+    values = np.moveaxis(values, axis, 0)
+    sums = np.concatenate([np.zeros_like(values[:1]), np.cumsum(values, axis=0)])
+    ends = np.arange(count + 1) * length / count
+    whole = np.minimum(ends.astype(int), length - 1)
+    at_ends = sums[whole] + (ends - whole).reshape(-1, 1, 1) * values[whole]
+    return np.moveaxis(np.diff(at_ends, axis=0) * (count / length), 0, axis)
+
+
+def difference(pixels: np.ndarray, motions: np.ndarray) -> float:
+    """The root of the mean square by which texels differ from what is looked up at their copies under the motions."""
+    height, width = pixels.shape[:2]
+    at = np.stack(np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height), -1)
+    some = at[:: max(1, height // 256), :: max(1, width // 256)].reshape(-1, 2)
+    own = baking.sampled(pixels, some)
+    squares = [np.square(baking.sampled(pixels, some @ one[:, :2].T + one[:, 2]) - own).mean() for one in motions]
+    return float(np.sqrt(np.mean(squares))) if squares else 0.0

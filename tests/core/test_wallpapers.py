@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Images to start from (addon/wallpapers.py, addon/formulas.py): formulas under groups, pictures that are laid over a
+tile."""
+
+import numpy as np
+import pytest
+from surfaces import bare
+from test_wallpaper import AWAY, GLIDE, GROUPS, MIRROR, SIXTH, THIRD, TURN
+
+import core
+
+SQUARE = np.array([[[0, 0], [1, 0], [1, 1]], [[0, 0], [1, 1], [0, 1]]], float)
+HALF = SQUARE * [1, 0.5] + [0, -0.5]  # a tile of 2222, beyond the unit square
+EQUAL = np.eye(2)
+MOTIONS = {"2": TURN[2], "4": TURN[4], "3": THIRD, "6": SIXTH, "*": MIRROR, "x": GLIDE, "away": AWAY}
+KEPT_BY = {  # the motions that leave the patterns as they are
+    "CHECKER": "2 4 * x away", "STRIPES": "2 * x away", "TRIANGLES": "3", "QUADS": "2 4 * x away",
+    "HEXAGONS": "2 3 6 * x away", "BRICKS": "2 * x away", "WEAVE": "2 4", "SCALES": "* x away",
+}
+
+
+def move(motion):
+    rows = np.array(motion, float)
+    return lambda points: points @ rows[:, :2].T + rows[:, 2]
+
+
+@pytest.mark.parametrize("kind", KEPT_BY)
+def test_patterns_fit_these_motions_and_no_others(kind):
+    formulas = bare("formulas")
+    assert KEPT_BY.keys() == formulas.PATTERNS.keys()
+    pattern = formulas.PATTERNS[kind]
+    assert {name for name, one in MOTIONS.items() if formulas.fits(pattern, [move(one)])} == set(KEPT_BY[kind].split())
+    for period in ([[1, 0, 1], [0, 1, 0]], [[1, 0, 0], [0, 1, 1]]):
+        assert formulas.fits(pattern, [move(period)])
+
+
+@pytest.mark.parametrize("kind, name", [("WEAVE", "442"), ("BRICKS", "2222"), ("SCALES", "o"), ("SCALES", "xx")])
+def test_images_of_patterns_are_as_the_group_leaves_them(kind, name):
+    wallpapers, formulas = bare("wallpapers"), bare("formulas")
+    pixels = wallpapers.of_formula(formulas.PATTERNS[kind], 96, 96, np.zeros(2), np.zeros(3), np.ones(3))
+    symmetric = pixels.copy()
+    core.Wallpaper(96, 96, GROUPS[name][0]).symmetrize(symmetric)
+    assert np.abs(symmetric - pixels).max() < 1e-6 and pixels[:, :, 0].std() > 0.05
+    assert set(np.unique(16 * pixels)) <= set(range(17))  # of 4 x 4 points
+    moved = wallpapers.of_formula(formulas.PATTERNS[kind], 96, 96, np.array([0.25, 0.5]), np.zeros(3), np.ones(3))
+    assert np.abs(moved - np.roll(pixels, (-48, -24), (0, 1))).max() < 1e-6
+
+
+def test_sizes_are_squares_where_texels_go_to_texels_and_else_texels_are_squares():
+    size_for = bare("wallpapers").size_for
+    tall = np.array([[2.0, 0.0], [0.0, 2 * 3**0.5]])
+    assert size_for(512, np.array([TURN[2]]), tall) == (512, 512)
+    assert size_for(512, np.array([THIRD]), tall) == (512, 887)
+
+
+def test_motions_are_read_from_functions():
+    wallpapers = bare("wallpapers")
+    found = wallpapers.motions_of([move(SIXTH), move(AWAY)])
+    assert np.abs(found - [SIXTH, AWAY]).max() < 1e-12 and wallpapers.motions_of([]).shape == (0, 2, 3)
+
+
+@pytest.mark.parametrize("width, height", [(5, 3), (7, 6), (1, 1), (10, 9)])
+def test_smaller_pictures_are_means_of_what_they_cover(width, height):
+    picture = np.random.default_rng(2).random((9, 10, 4)).astype(np.float32)
+    picture[:, :, 3] = 1
+    found = bare("wallpapers").resized(picture, width, height)
+    finer = np.repeat(np.repeat(picture.astype(float), height, 0), width, 1)  # whole numbers of these in each texel
+    wanted = finer.reshape(height, 9, width, 10, 4).mean((1, 3))
+    assert np.abs(found - wanted).max() < 1e-12
+    picture[4:, :, 3] = 0
+    picture[4:, :, :3] = 9
+    assert bare("wallpapers").resized(picture, 1, 1)[0, 0, :3].max() < 1  # what cannot be seen has no colour
+
+
+def test_a_picture_lies_over_the_tile_and_is_folded_to_the_rest():
+    wallpapers = bare("wallpapers")
+    v, u = (np.mgrid[:60, :120] + 0.5) / [[[60]], [[120]]]
+    picture = np.stack([u, v, 0 * u, 1 + 0 * u], 2).astype(np.float32)
+    for whole in (False, True):  # the tile is twice as wide as high, as the picture is
+        pixels = wallpapers.of_picture(picture, 80, 80, HALF, EQUAL, whole)
+        core.Wallpaper(80, 80, [TURN[2]], HALF).symmetrize(pixels)
+        there = (np.arange(80) + 0.5) / 80
+        assert np.abs(pixels[40:, :, 0] - there).max() < 0.01  # v from -0.5 to 0 is the image's upper half
+        assert np.abs(pixels[40:, :, 1] - there[::2, None] - 0.00625).max() < 0.02
+        assert (pixels[:40] == pixels[40:][::-1, ::-1]).all()
+
+
+def test_proportions_are_kept_unless_the_whole_picture_is_asked_for():
+    wallpapers = bare("wallpapers")
+    v, u = (np.mgrid[:90, :90] + 0.5) / 90
+    picture = np.stack([u, v, 0 * u, 1 + 0 * u], 2).astype(np.float32)
+    cut, whole = (wallpapers.of_picture(picture, 60, 60, HALF, EQUAL, w)[30:] for w in (False, True))
+    assert abs(np.ptp(cut[:, :, 1]) - 0.5) < 0.03 and abs(cut[:, :, 1].mean() - 0.5) < 0.01
+    assert np.ptp(whole[:, :, 1]) > 0.95 and np.ptp(cut[:, :, 0]) > 0.95
+    high = wallpapers.of_picture(picture, 60, 60, HALF, np.diag([1.0, 2.0]), False)[30:]  # the tile is a square then
+    assert np.abs(high - whole).max() < 1e-6
+
+
+def test_the_difference_is_that_of_the_copies():
+    difference = bare("wallpapers").difference
+    pixels = np.random.default_rng(1).random((32, 32, 4)).astype(np.float32)
+    turned = np.array([TURN[2]])
+    assert difference(pixels, turned) > 0.1
+    core.Wallpaper(32, 32, turned).symmetrize(pixels)
+    assert difference(pixels, turned) < 1e-6 and difference(pixels, turned[:0]) == 0
