@@ -17,6 +17,7 @@
 #   ./build.sh docs [--blender PATH]      the pictures of docs/orbifolds.md and docs/batch.md, rendered
 #   ./build.sh docs window [NAME...]      the pictures of Blender's window, of a real one on a virtual screen
 #   ./build.sh docs cones                 the tables of docs/cones.md, measured (an hour)
+#   ./build.sh docs zoo                   docs/zoo.md: what becomes of bad meshes
 #   ./build.sh deps                       install what all of these need, and nothing else
 #   ./build.sh clean                      remove what was built
 #
@@ -226,12 +227,12 @@ version_of() { "$@" --version 2>/dev/null </dev/null | sed -n 's/^Blender \([0-9
 bench() { native; make_native bench; "$build/native/bench" "${arguments[@]}"; }
 
 docs() {
-    if [ "${arguments[*]}" = cones ]; then
-        want_python numpy
-        native
-        PYTHONDONTWRITEBYTECODE=1 "$(find_python numpy)" "$root/docs/make_cones.py"
-        return
-    fi
+    export PYTHONDONTWRITEBYTECODE=1
+    case ${arguments[*]} in cones | zoo) want_python numpy; native ;; esac
+    case ${arguments[*]} in
+        cones) "$(find_python numpy)" "$root/docs/make_cones.py"; return ;;
+        zoo) "$(find_python numpy)" "$root/tests/core/zoo.py" >"$build/zoo.md"; mv "$build/zoo.md" "$root/docs/zoo.md"; return ;;
+    esac
     local script=make_pictures.sh
     if [ "${arguments[0]:-}" = window ]; then script=make_window_pictures.sh arguments=("${arguments[@]:1}"); fi
     want_docs

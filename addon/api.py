@@ -147,6 +147,7 @@ def transfer(
     colours: bool = True,
     attributes: bool = True,
     uv_maps: bool = True,
+    cut_seams: bool = False,
     texture: bool = False,
     form: bool = False,
     form_back: bool = False,
@@ -161,7 +162,8 @@ def transfer(
 ) -> dict:
     """What the source's mesh has -> the targets' meshes, by maps that are one to one and take landmarks to landmarks.
     The report: `source`, `signature`, `geometry`, and `targets`, for each `object`, `written` (names, by kind),
-    `crossing_faces` (that a seam of the source's UV maps runs through), `locked_groups`, `distortion`, `flipped`,
+    `crossing_faces` (that a seam of the source's UV maps runs through), `cut_faces` (how many were cut), `cut_pieces`
+    (into how many), `locked_groups`, `distortion`, `flipped`,
     `landmark_residual`, `bijective`, and `cut_ratio`: how many times as long as its own the source's landmark paths
     become. Where one target fails nothing is written to any.
 
@@ -179,8 +181,8 @@ def transfer(
             "for each, that of the source first"
         )
     wishes = Wishes(
-        groups=groups, colours=colours, attributes=attributes, uv_maps=uv_maps, texture=texture, form=form,
-        form_back=form_back, shape_keys=shape_keys, heat=heat, heat_area=heat_area, signature=signature,
+        groups=groups, colours=colours, attributes=attributes, uv_maps=uv_maps, cut_seams=cut_seams, texture=texture,
+        form=form, form_back=form_back, shape_keys=shape_keys, heat=heat, heat_area=heat_area, signature=signature,
         weights=weights, clamp=clamp, holes=holes,
     )
     with _expected(source, *chosen):

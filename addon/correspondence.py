@@ -140,7 +140,7 @@ class Correspondence:
         loops, faces, vertices = loops[known], faces[known], vertices[known]
         continued, astray = self._continued(corners, loops, faces, vertices, found[loops])
         crossing = np.zeros(len(self.middles.triangles), bool)
-        crossing[self._met(_torn(self.source.triangles, corners))] = True
+        crossing[self._met(torn_edges(self.source.triangles, corners)[:, 0])] = True
         beyond = np.zeros(len(crossing), bool)
         beyond[faces[astray]] = True
         for _ in range(8):  # a seam may cut off a tip of a face that no sample is in
@@ -237,8 +237,9 @@ def _along(corners: np.ndarray, steps: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return corners // 3, weights
 
 
-def _torn(triangles: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """(k,) where a UV map (m, 3, 2) is torn: of each such edge the corner, of all 3 m, that it begins with."""
+def torn_edges(triangles: np.ndarray, corners: np.ndarray) -> np.ndarray:
+    """(k, 2) where a UV map (m, 3, 2) is torn: of each such edge the corners, of all 3 m, that it begins with in the
+    triangles on both sides."""
     ends = _sides(triangles)
     values = np.stack([corners, np.roll(corners, -1, axis=1)], 2).reshape(-1, 2, corners.shape[-1])
     turned = ends[:, 0] > ends[:, 1]
@@ -247,7 +248,7 @@ def _torn(triangles: np.ndarray, corners: np.ndarray) -> np.ndarray:
     order = np.argsort(keys, kind="stable")
     same = np.flatnonzero(keys[order[1:]] == keys[order[:-1]])
     one, other = order[same], order[same + 1]
-    return one[np.abs(values[one] - values[other]).max((1, 2), initial=0.0) > TORN]
+    return np.stack([one, other], 1)[np.abs(values[one] - values[other]).max((1, 2), initial=0.0) > TORN]
 
 
 # ------------------------------------------------------------------------------------------------- the orbifold

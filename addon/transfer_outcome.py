@@ -12,8 +12,9 @@ from typing import Optional
 import bpy
 import numpy as np
 
-from . import arrangement, baking, blender_mesh, core, heat, textures
+from . import arrangement, baking, blender_mesh, core, heat, seam_edit, textures
 from .correspondence import Correspondence
+from .seam_cut import SeamCut, cut_along
 from .steps import Step, part_of
 
 FORM = "Form of {}"  # shape keys
@@ -28,6 +29,7 @@ class Wishes:
     attributes: bool = True
     colours: bool = True
     uv_maps: bool = True
+    cut_seams: bool = False  # the targets' faces, where those are torn
     texture: bool = False  # the image of the source's material, to the targets' active UV maps
     form: bool = False  # a shape key of each target: the source's form
     form_back: bool = False  # a shape key of the source for each target: its form
@@ -78,6 +80,8 @@ class Outcome:
     writes: list[Callable[[], object]] = field(default_factory=list)
     names: dict[str, list[str]] = field(default_factory=dict)  # of what is written, by kind
     crossing: np.ndarray = field(default_factory=lambda: np.zeros(0, int))  # faces that a seam runs through
+    cut: Optional[SeamCut] = None  # of its faces
+    cut_uv: dict[str, np.ndarray] = field(default_factory=dict)  # UV maps at the corners of the cut's pieces
     locked: list[str] = field(default_factory=list)  # vertex groups
 
     @property
@@ -88,6 +92,11 @@ class Outcome:
     def strained(self) -> bool:
         """As maps are whose landmarks do not correspond, or that are twisted."""
         return max(self.distortion.quasi_conformal_mean, self.cut_ratio) > MUCH
+
+    def write_cut(self) -> None:
+        """After all `writes`, as vertices and faces are added."""
+        if self.cut is not None and self.cut.pieces:
+            seam_edit.apply(self.target.obj.data, self.target.arrays.triangles, self.cut, self.cut_uv)
 
     def add(self, kind: str, name: str, write: Callable[[], object]) -> None:
         self.names.setdefault(kind, []).append(name)
@@ -123,7 +132,11 @@ def outcome_of(
         _add_groups(source, work, outcome)
     yield "attributes", 0.2
     _add_attributes(source, attributes_of(source, wishes), work, outcome)
-    for name in uv_maps_of(source, wishes):
+    names = uv_maps_of(source, wishes)
+    if wishes.cut_seams and names:
+        own = [blender_mesh.read_uv(source.obj.data, name).astype(np.float64) for name in names]
+        outcome.cut = yield from part_of(0.2, 0.3, cut_along(work, own))
+    for name in names:
         yield "UV maps", 0.3
         _add_uv_map(source, name, work, outcome)
     if texture is not None:
@@ -199,7 +212,14 @@ def _of_faces(values: np.ndarray, work: Correspondence, n_faces: int) -> tuple[n
 
 
 def _add_uv_map(source: Member, name: str, work: Correspondence, outcome: Outcome) -> None:
-    uv, crossing = work.of_uv(blender_mesh.read_uv(source.obj.data, name).astype(np.float64))
+    own = blender_mesh.read_uv(source.obj.data, name).astype(np.float64)
+    uv, crossing = work.of_uv(own)
+    if outcome.cut is not None:
+        crossing = outcome.cut.crossing
+        across = np.zeros(len(uv), bool)
+        across[work.target.loops[np.isin(work.target.polygons, crossing)]] = True
+        uv = np.where(across[:, None], uv, work.of_corners(own))
+        outcome.cut_uv[name] = outcome.cut.corners.mixed(own[work.source.loops])
     outcome.crossing = np.union1d(outcome.crossing, crossing).astype(int)
     outcome.add("UV maps", name, partial(
         blender_mesh.write_uv_of_loops, outcome.target.obj.data, uv, work.corners.there, name
@@ -258,6 +278,8 @@ def described(outcome: Outcome) -> str:
             f" That is much, and the source's landmark paths become {outcome.cut_ratio:.1f} times as long as its own: "
             "look whether the landmarks correspond, and whether another order of them mends a twist."
         )
+    if outcome.cut is not None and outcome.cut.cut_faces:
+        text += f" {outcome.cut.cut_faces} faces were cut into {outcome.cut.cut_pieces} at the source's seams."
     if len(outcome.crossing):
         text += f" {len(outcome.crossing)} faces cross a seam of the source's UV maps: they are selected."
     if outcome.locked:

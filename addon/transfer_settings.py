@@ -20,6 +20,11 @@ UV_MAPS = dict(
     name="UV Maps", default=True,
     description="Faces that a seam of the source runs through continue the island of their middle, and are selected",
 )
+CUT_SEAMS = dict(
+    name="Cut Faces at Seams", default=False,
+    description="Cut the targets' faces where seams of the source's UV maps run through them, so that the UV maps are "
+    "right everywhere. The targets get new vertices and faces, and seams there",
+)
 TEXTURE = dict(
     name="Image Texture", default=False,
     description="Bake the image of the source's active material to the active UV map of each target, texel by texel: "
@@ -53,9 +58,17 @@ SIGNATURE = dict(
     "333 for three landmarks, 2222 for four in the plane, and cones of order 2 in the hyperbolic plane for more",
 )
 NAMES = (
-    "groups", "colours", "attributes", "uv_maps", "texture", "form", "form_back", "shape_keys", "heat",
+    "groups", "colours", "attributes", "uv_maps", "cut_seams", "texture", "form", "form_back", "shape_keys", "heat",
     "heat_area", "signature",
 )
+
+
+def draw(layout: bpy.types.UILayout, settings: bpy.types.bpy_struct, name: str) -> None:
+    """One of NAMES, grey where it has no effect."""
+    row = layout.row()
+    if name == "cut_seams":
+        row.enabled = settings.uv_maps
+    row.prop(settings, name)
 
 
 class OrbifoldTransfer(bpy.types.PropertyGroup):
@@ -65,6 +78,7 @@ class OrbifoldTransfer(bpy.types.PropertyGroup):
     colours: BoolProperty(**COLOURS)
     attributes: BoolProperty(**ATTRIBUTES)
     uv_maps: BoolProperty(**UV_MAPS)
+    cut_seams: BoolProperty(**CUT_SEAMS)
     texture: BoolProperty(**TEXTURE)
     form: BoolProperty(**FORM)
     form_back: BoolProperty(**FORM_BACK)

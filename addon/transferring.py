@@ -13,7 +13,7 @@ from typing import Optional, Union
 import bpy
 import numpy as np
 
-from . import arrangement, blender_mesh, cones, core, cut_paths, heat, layouts, textures
+from . import arrangement, blender_mesh, cones, core, cut_paths, heat, layouts, seam_edit, textures
 from .correspondence import orbifold_for
 from .steps import Step, Steps, part_of
 from .transfer_outcome import Member, Outcome, Wishes, attributes_of, described, outcome_of, uv_maps_of
@@ -87,6 +87,8 @@ class Transferring:
                         f"{other.name} and {target.name} share one mesh: make it single-user (Object > Relations), or "
                         "deselect one of them"
                     )
+            if self.wishes.uv_maps and self.wishes.cut_seams:
+                seam_edit.check(target)
 
     def _member(self, obj: bpy.types.Object, landmarks: list[int]) -> Member:
         self.at = obj
@@ -204,6 +206,8 @@ class Transferring:
                     blender_mesh.select_elements(outcome.target.obj.data, nothing, nothing, outcome.crossing)
             for member in self.members:
                 _draw_paths(member)
+            for outcome in self.outcomes:  # at the end, as all else counts the vertices and faces that were there
+                outcome.write_cut()
 
     def message(self) -> str:
         said = [f"{outcome.target.obj.name}: {described(outcome)}" for outcome in self.outcomes]
@@ -226,6 +230,8 @@ class Transferring:
                     "written": outcome.names,
                     "locked_groups": outcome.locked,
                     "crossing_faces": outcome.crossing.tolist(),
+                    "cut_faces": outcome.cut.cut_faces if outcome.cut is not None else 0,
+                    "cut_pieces": outcome.cut.cut_pieces if outcome.cut is not None else 0,
                     "landmark_residual": outcome.map.landmark_residual,
                     "cut_ratio": outcome.cut_ratio,
                     "flipped": outcome.distortion.flipped,

@@ -12,6 +12,7 @@ import numpy as np
 from . import baking, core, formulas
 
 FINER = 4  # points along each side of a texel, at which a formula is computed
+THINNEST = 0.004  # of the period: lines of patterns are not thinner
 AT_ONCE = 2**20  # points
 LARGEST = 32768  # texels along a side
 
@@ -39,29 +40,42 @@ def of_formula(
 ) -> np.ndarray:
     """(height, width, 4) float32: `dark` and `light` (3,) in the proportion that the pattern's two colours have in a
     texel. The image's corner is at `origin` (2,) of the lattice's coordinates."""
+    u, v = (np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height
     share = np.empty((height, width), np.float32)
-    step = max(1, AT_ONCE // (width * FINER**2))
-    u = (np.arange(width * FINER) + 0.5) / (width * FINER)
-    for first in range(0, height, step):
-        rows = min(step, height - first)
-        v = (np.arange(first * FINER, (first + rows) * FINER) + 0.5) / (height * FINER)
-        points = np.stack(np.meshgrid(u, v), -1).reshape(-1, 2) + origin
-        chosen = formulas.value_at(pattern, points).reshape(rows, FINER, width, FINER) > 0
-        share[first : first + rows] = chosen.mean((1, 3))
+    for first in range(0, height, max(1, AT_ONCE // width)):
+        rows = slice(first, first + max(1, AT_ONCE // width))
+        share[rows] = _chosen(pattern, np.stack(np.meshgrid(u, v[rows]), -1) + origin)
+    mixed = np.ones((height, width), bool)
+    if min(width, height) * THINNEST > 1:  # a texel of another colour than those beside it: no line is missed
+        mixed = np.logical_or.reduce([share != np.roll(share, step, axis) for axis in (0, 1) for step in (1, -1)])
+    at = np.argwhere(mixed)
+    steps = (np.arange(FINER) + 0.5) / FINER - 0.5
+    within = np.stack(np.meshgrid(steps / width, steps / height), -1).reshape(-1, 2)
+    for first in range(0, len(at), AT_ONCE // FINER**2):
+        y, x = at[first : first + AT_ONCE // FINER**2].T
+        points = np.stack([u[x], v[y]], 1)[:, None] + within + origin
+        share[y, x] = _chosen(pattern, points).mean(1)
     pixels = np.ones((height, width, 4), np.float32)
     pixels[:, :, :3] = share[:, :, None] * np.subtract(light, dark) + dark
     return pixels
 
 
+def _chosen(pattern: formulas.Pattern, points: np.ndarray) -> np.ndarray:
+    """(...) bool at points (..., 2): whether they have the second colour."""
+    return (formulas.value_at(pattern, points.reshape(-1, 2)) > 0).reshape(points.shape[:-1])
+
+
 def of_picture(
-    picture: np.ndarray, width: int, height: int, tile: np.ndarray, sides: np.ndarray, whole: bool = False
+    picture: np.ndarray, width: int, height: int, tile: np.ndarray, sides: np.ndarray, whole: bool = False,
+    wanted: np.ndarray | None = None,
 ) -> np.ndarray:
     """(height, width, 4) float32: on the tile (m, 3, 2) what a picture (h, w, 4) float32 has that is laid over the
     tile's bounding box; beside it, period by period, what is there. Not yet symmetric.
 
-    sides  (2, 2) of the period, in the plane: the picture keeps its proportions, and what of it is too wide or too high
-           is cut off
-    whole  nothing is cut off, the picture is stretched
+    sides   (2, 2) of the period, in the plane: the picture keeps its proportions, and what of it is too wide or too
+            high is cut off
+    whole   nothing is cut off, the picture is stretched
+    wanted  (height, width) bool: other texels are left black
     """
     low, extent = tile.reshape(-1, 2).min(0), np.ptp(tile.reshape(-1, 2), axis=0)
     if not whole:
@@ -73,11 +87,12 @@ def of_picture(
     for first, last in baking.portions(tile, width, height):
         where, of, barycentric = baking.texels_of(tile[first:last], width, height)
         places[where] = np.einsum("pc,pcd->pd", barycentric, tile[first:last][of])
-    half = 0.5 / np.array(fine.shape[1::-1])
-    inside = np.clip((places - low) / extent, half, 1 - half)  # its border does not repeat
-    pixels = np.empty((height * width, 4), np.float32)
-    for start in range(0, len(pixels), AT_ONCE):
-        pixels[start : start + AT_ONCE] = baking.sampled(fine, inside[start : start + AT_ONCE])
+    half = 0.5 / np.array(fine.shape[1::-1])  # the picture's border does not repeat
+    at = np.arange(height * width) if wanted is None else np.flatnonzero(wanted)
+    pixels = np.zeros((height * width, 4), np.float32)
+    for first in range(0, len(at), AT_ONCE):
+        some = at[first : first + AT_ONCE]
+        pixels[some] = baking.sampled(fine, np.clip((places[some] - low) / extent, half, 1 - half))
     return pixels.reshape(height, width, 4)
 
 

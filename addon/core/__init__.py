@@ -34,7 +34,7 @@ from .suggest import (
     suggest_cones,
     worth_trying,
 )
-from .surface_map import MapDistortion, SurfaceMap, interpolated, landmark_sequence, surface_map
+from .surface_map import MapDistortion, SurfaceMap, Trace, interpolated, landmark_sequence, surface_map
 from .topology import Topology, topology_of, vertex_components
 from .wallpaper import Wallpaper, fill_seam_margin
 from .whole import WholeLayout, edge_keys, whole_layout
@@ -59,6 +59,7 @@ __all__ = [
     "Suggestion",
     "SuggestionJob",
     "SurfaceMap",
+    "Trace",
     "Topology",
     "Wallpaper",
     "WholeLayout",

@@ -212,6 +212,10 @@ class MapReport(Structure):
     _fields_ = [("steps", c_int64), ("elements", c_int32), ("in_holes", c_int32), ("landmark_residual", c_double)]
 
 
+class Stretch(Structure):
+    _fields_ = [("edge", c_int32), ("triangle", c_int32), ("at", c_double * 2), ("barycentric", c_double * 3 * 2)]
+
+
 class MapDistortion(Structure):
     _fields_ = [
         *(
@@ -223,8 +227,6 @@ class MapDistortion(Structure):
     ]
 
 
-EMBEDDING = c_void_p  # orb_embedding *
-SUGGESTIONS = c_void_p  # orb_suggestions *
 class Image(Structure):  # orb_image
     _fields_ = [
         ("width", c_int32), ("height", c_int32), ("channels", c_int32), ("texel", c_int), ("pixels", c_void_p),
@@ -235,6 +237,9 @@ class WallpaperView(Structure):  # orb_wallpaper_view
     _fields_ = [("order", c_int32), ("exact", c_bool), ("motions", DOUBLES), ("to_tile", POINTER(c_uint16))]
 
 
+EMBEDDING = c_void_p  # orb_embedding *
+SUGGESTIONS = c_void_p  # orb_suggestions *
+TRACE = c_void_p  # orb_trace *
 WALLPAPER = c_void_p  # orb_wallpaper *
 JOB = c_void_p  # orb_job *
 PREPARED = c_void_p  # orb_prepared *
@@ -276,6 +281,10 @@ PROTOTYPES = {
         c_int,
         [EMBEDDING, EMBEDDING, DOUBLES, DOUBLES, POINTER(MapDistortion), POINTER(Error)],
     ),
+    "orb_surface_map_trace": (c_int, [EMBEDDING, EMBEDDING, c_int32, INT32S, POINTER(TRACE), POINTER(Error)]),
+    "orb_trace_free": (None, [TRACE]),
+    "orb_trace_count": (c_int64, [TRACE]),
+    "orb_trace_read": (None, [TRACE, c_void_p]),
     "orb_wallpaper_create": (
         c_int,
         [c_int32, c_int32, c_int32, DOUBLES, c_int32, DOUBLES, c_int32, POINTER(WALLPAPER), POINTER(Error)],
@@ -447,6 +456,19 @@ class Embedding:
         )
         check(done, record)
         return ratio, log_area, measured
+
+    def trace(self, target: Embedding, corners: np.ndarray) -> np.ndarray:
+        """orb_surface_map_trace from this mesh: Stretch records of the edges that begin with corners (k,)."""
+        native, pointer, record = self._native, TRACE(), Error()
+        check(native.orb_surface_map_trace(
+            self._pointer, target._pointer, len(corners), int32s(corners), pointer, record
+        ), record)
+        try:
+            stretches = np.empty(native.orb_trace_count(pointer), np.dtype(Stretch))
+            native.orb_trace_read(pointer, stretches.ctypes.data)
+        finally:
+            native.orb_trace_free(pointer)
+        return stretches
 
 
 class Wallpaper:

@@ -65,6 +65,17 @@ class MapDistortion:
 
 
 @dataclass(frozen=True, eq=False)
+class Trace:
+    """The courses of k edges over a mesh, cut into s stretches that are straight within one triangle. Those of an edge
+    are in turn, and each begins where the one before ends: on a side or at a corner, where weights are exactly 0."""
+
+    edges: np.ndarray  # (s,) which edge, 0 to k - 1
+    triangles: np.ndarray  # (s,) of the target as they were given, or -1 in a hole that was filled
+    at: np.ndarray  # (s, 2) both ends along the edge, 0 to 1
+    barycentric: np.ndarray  # (s, 2, 3) both ends in the triangle
+
+
+@dataclass(frozen=True, eq=False)
 class SurfaceMap:
     """The map of one embedded mesh onto another one."""
 
@@ -111,6 +122,13 @@ class SurfaceMap:
         attribute of the target's given vertices, or where `corners` of its given triangles' corners, (m_target, 3, ...).
         NaN where a vertex is nowhere."""
         return interpolated(self.target, values, *self.spots, corners)
+
+    def trace(self, corners: ArrayLike) -> Trace:
+        """The courses of edges of the source over the target: of each edge the corner, of all 3 m of its triangles as
+        they were given, that it begins with in a triangle."""
+        picked = integers(corners, (-1,), "corners of the edges", "ORB_INDEX_OUT_OF_RANGE", "corner")
+        found = self.source.native.trace(self.target.native, picked)
+        return Trace(found["edge"], found["triangle"], found["at"], found["barycentric"])
 
     @cached_property
     def distortion(self) -> MapDistortion:

@@ -35,9 +35,9 @@ coordinates (.obj .ply .glb .gltf .fbx; NAME.blend is there anyway).
 With --map-to a map takes what MESH has to another mesh: --cones are its landmarks, --map-cones the corresponding ones
 of the other in the same sequence; without them they are the cones that a .blend keeps. --orbifold is by their number
 where it is not said. --transfer names what comes over: groups,colours,attributes,uv_maps if nothing is said, and
-texture,form,form_back,shape_keys,heat,heat_area. NAME is then that of the other mesh: NAME.blend has both meshes,
-NAME.json the report, NAME.npz the map in both directions, and NAME.png shows one pattern on both. Several --map-to, or
-a folder, are several jobs, each with its --map-cones if one has them.
+cut_seams,texture,form,form_back,shape_keys,heat,heat_area. NAME is then that of the other mesh: NAME.blend has both
+meshes, NAME.json the report, NAME.npz the map in both directions, and NAME.png shows one pattern on both. Several
+--map-to, or a folder, are several jobs, each with its --map-cones if one has them.
 
 Several meshes, a folder (all mesh files in it) and a list of jobs are done one after the other; a mesh that fails does
 not stop the others. A table sums up, and the exit status is 0 only if all went well. A list of jobs is a .csv file, its

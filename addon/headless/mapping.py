@@ -66,7 +66,7 @@ class Mapped:
 
     def summary(self, arguments: Arguments, seconds: float) -> list[str]:
         """What to tell the user."""
-        n_source, n_target = (len(member.obj.data.vertices) for member in self.work.members)
+        n_source, n_target = (len(member.arrays.vertices) for member in self.work.members)
         return [
             f"{self.files[0]} to {self.files[1]}: {n_source} and {n_target} vertices by {self.work.signature}, "
             f"{len(self.source.landmarks)} landmarks",

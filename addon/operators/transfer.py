@@ -53,6 +53,7 @@ class OBJECT_OT_orbifold_transfer(JobOperator, bpy.types.Operator):
     colours: BoolProperty(**transfer_settings.COLOURS)
     attributes: BoolProperty(**transfer_settings.ATTRIBUTES)
     uv_maps: BoolProperty(**transfer_settings.UV_MAPS)
+    cut_seams: BoolProperty(**transfer_settings.CUT_SEAMS)
     texture: BoolProperty(**transfer_settings.TEXTURE)
     form: BoolProperty(**transfer_settings.FORM)
     form_back: BoolProperty(**transfer_settings.FORM_BACK)
@@ -66,7 +67,7 @@ class OBJECT_OT_orbifold_transfer(JobOperator, bpy.types.Operator):
         layout = self.layout
         layout.use_property_split = True
         for name in (*transfer_settings.NAMES, "weights"):
-            layout.prop(self, name)
+            transfer_settings.draw(layout, self, name)
 
     # ------------------------------------------------------------------- the stages, of all meshes instead of one
 

@@ -18,6 +18,8 @@ SIZE = dict(
     "1.73 times as high as it is wide", default=2048, min=16, max=8192,
 )
 NOT_PERIODIC = 1e-4  # of the unit square
+ALONE = 65535  # of Wallpaper.to_tile: a texel that keeps what it has
+Painted = tuple[str, np.ndarray, Optional[bpy.types.Image]]  # a name, (h, w, 4), and the image it is to be like
 
 
 class WallpaperOperator(LayoutOperator):
@@ -31,7 +33,7 @@ class WallpaperOperator(LayoutOperator):
         try:
             width, height = wallpapers.size_for(self.size, motions, sides)
             wallpaper = core.Wallpaper(width, height, motions, layout.uv)
-            name, pixels, like = self.painted(layout, width, height, sides)
+            name, pixels, like = self.painted(layout, wallpaper, sides)
             if like is None or not like.is_float:
                 pixels = np.rint(255 * np.clip(pixels, 0, 1)).astype(np.uint8)
             wallpaper.symmetrize(pixels, self.source)
@@ -76,12 +78,14 @@ class OBJECT_OT_orbifold_pattern_image(WallpaperOperator, bpy.types.Operator):
             self.pattern = chosen
         return self.execute(context)
 
-    def painted(self, layout: layouts.Layout, width: int, height: int, _sides: np.ndarray):
+    def painted(self, layout: layouts.Layout, wallpaper: core.Wallpaper, _sides: np.ndarray) -> Painted:
         problem = procedural.why_not(self.pattern, layout, layout.to_cells)
         if problem is not None:
             raise blender_mesh.BlenderMeshError(problem)
         pattern = formulas.PATTERNS[self.pattern]
-        pixels = wallpapers.of_formula(pattern, width, height, layout.lattice[2], procedural.DARK, procedural.LIGHT)
+        pixels = wallpapers.of_formula(
+            pattern, wallpaper.width, wallpaper.height, layout.lattice[2], procedural.DARK, procedural.LIGHT
+        )
         pixels[:, :, :3] = _encoded(pixels[:, :, :3])
         return pattern.name, pixels, None
 
@@ -126,7 +130,7 @@ class IMAGE_OT_orbifold_wallpaper(WallpaperOperator, bpy.types.Operator):
             self.picture = shown.name if shown is not None else ""
         return context.window_manager.invoke_props_dialog(self)
 
-    def painted(self, layout: layouts.Layout, width: int, height: int, sides: np.ndarray):
+    def painted(self, layout: layouts.Layout, wallpaper: core.Wallpaper, sides: np.ndarray) -> Painted:
         picture = bpy.data.images.get(self.picture)
         if picture is None:
             raise blender_mesh.BlenderMeshError("Choose a picture: open one in the image editor first")
@@ -134,8 +138,9 @@ class IMAGE_OT_orbifold_wallpaper(WallpaperOperator, bpy.types.Operator):
         if problem is not None:
             raise blender_mesh.BlenderMeshError(problem)
         pixels = image_edits.read_colours(picture)
-        painted = wallpapers.of_picture(pixels, width, height, layout.uv, sides, self.whole)
-        return picture.name, painted, picture
+        kept = np.isin(wallpaper.to_tile, (0, ALONE)) if self.source == "tile" else None
+        size = wallpaper.width, wallpaper.height
+        return picture.name, wallpapers.of_picture(pixels, *size, layout.uv, sides, self.whole, kept), picture
 
 
 CLASSES = (OBJECT_OT_orbifold_pattern_image, IMAGE_OT_orbifold_wallpaper)

@@ -39,7 +39,7 @@ class VIEW3D_PT_orbifold_transfer(bpy.types.Panel):
         column = layout.column(align=True)
         for name in transfer_settings.NAMES:
             if name != "signature":
-                column.prop(settings, name)
+                transfer_settings.draw(column, settings, name)
         row = layout.row()
         row.scale_y = 1.3
         button = row.operator("object.orbifold_transfer")

@@ -53,6 +53,27 @@ ORB_API orb_status orb_surface_map_distortion(const orb_embedding *source, const
                                               double *quasi_conformal, double *log_area, orb_map_distortion *distortion,
                                               orb_error *error);
 
+/* A part of the course of an edge of the source over the target, that is straight within one triangle of the target's
+ * input (where its edges were halved, within a piece of it). */
+typedef struct orb_stretch {
+    int32_t edge;          /* number among those that were asked for */
+    int32_t triangle;      /* of the target's input; -1, and weights 0, in a filled hole */
+    double at[2];          /* of both ends along the edge, 0 at its first end to 1 */
+    double barycentric[6]; /* of both ends in that triangle, exactly 0 on its sides and exactly 1 at its corners */
+} orb_stretch;
+
+/* Where edges of the source's input go: edge i from the input corner corners[i] (3 t + c) to the next one of its
+ * triangle. The stretches of an edge are in turn, each begins where the one before ends, and between stretches the
+ * course is on a side of the target, or at a corner of it: what passes by a corner within rounding goes through it. The
+ * course is where orb_surface_map has the edge's points. Errors: as of orb_surface_map. */
+typedef struct orb_trace orb_trace;
+ORB_API orb_status orb_surface_map_trace(const orb_embedding *source, const orb_embedding *target, int32_t n_edges,
+                                         const int32_t *corners, orb_trace **trace, orb_error *error);
+ORB_API void orb_trace_free(orb_trace *trace);
+ORB_API int64_t orb_trace_count(const orb_trace *trace);
+/* Copies all to stretches[orb_trace_count]. */
+ORB_API void orb_trace_read(const orb_trace *trace, orb_stretch *stretches);
+
 /* sequence[n]: the numbers of the landmarks in the sequence of a short walk along edges (2016, section 7), for the
  * cones of every mesh with these landmarks. Landmarks change places only with those of the same order; orders NULL:
  * with all. Errors: mesh_create's, ORB_SEVERAL_COMPONENTS, ORB_BAD_CONE. */

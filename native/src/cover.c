@@ -130,6 +130,11 @@ orb_status cover_cross_source(orb_cover *cover, int32_t h, int32_t *element, orb
     return cross(cover, 0, h, element, error);
 }
 
+orb_status cover_cross_target(orb_cover *cover, int32_t h, orb_sheet *sheet, orb_error *error) {
+    sheet->triangle = cover->target->mesh->twin[h] / 3;
+    return cross(cover, 1, h, &sheet->element, error);
+}
+
 /* --- walking ----------------------------------------------------------------------------------------------------- */
 
 /* A point in a triangle of the target. */
@@ -241,10 +246,9 @@ orb_status cover_walk(orb_cover *cover, orb_point p, bool boundary, orb_spot *sp
             break;
         }
         const int32_t h = 3 * sheet.triangle + (out + 1) % 3;
-        orb_status status = cross(cover, 1, h, &sheet.element, error);
+        orb_status status = cover_cross_target(cover, h, &sheet, error);
         if (status != ORB_OK)
             return status;
-        sheet.triangle = mesh->twin[h] / 3;
     }
     if (!*found)
         return ORB_OK;

@@ -47,6 +47,9 @@ void cover_clear(orb_cover *cover);
 /* From a sheet on the source's triangle h / 3 to that of the triangle across h: only the element changes. */
 orb_status cover_cross_source(orb_cover *cover, int32_t h, int32_t *element, orb_error *error);
 
+/* From a sheet on the target's triangle h / 3 to the triangle across h, which is not on the boundary. */
+orb_status cover_cross_target(orb_cover *cover, int32_t h, orb_sheet *sheet, orb_error *error);
+
 /* Walks from spot->sheet to the triangle that p, on the source's layout in that sheet, lies in. *found: false if there
  * is none, beyond rounding. p goes onto the target's boundary where `boundary`. Error: ORB_OUT_OF_MEMORY. */
 orb_status cover_walk(orb_cover *cover, orb_point p, bool boundary, orb_spot *spot, bool *found, orb_error *error);

@@ -70,6 +70,12 @@ double complex geometry_toward(const orb_geometry *geometry, orb_point p, orb_po
     return difference / (conformal_factor(geometry, p) + geometry->K * conj(p.z) * difference);
 }
 
+double complex geometry_seen(const orb_geometry *geometry, orb_point p, orb_point q) {
+    const double complex t = geometry_toward(geometry, p, q);
+    const double r = modulus(t);
+    return 2 / (1 + geometry->K * r * r) * t;
+}
+
 /* atan_K(r) / r */
 static double atan_ratio(const orb_geometry *geometry, double r) { return r > 0 ? geometry->atan(r) / r : 1; }
 

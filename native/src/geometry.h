@@ -64,6 +64,9 @@ orb_point point_linear(double complex a, double complex b, orb_point p);
 
 /* t: where q goes when p is moved to the origin; direction from p to q, |t| = tan_K(distance / 2). */
 double complex geometry_toward(const orb_geometry *geometry, orb_point p, orb_point q);
+/* The first two coordinates of q (docs/mathematics.md, section 1) when p is moved to the origin: linear along
+ * geodesics, up to one factor for all q. */
+double complex geometry_seen(const orb_geometry *geometry, orb_point p, orb_point q);
 double geometry_distance(const orb_geometry *geometry, orb_point p, orb_point q);
 /* Whether the two are so nearly opposite on the sphere that they determine no geodesic. */
 bool geometry_is_antipodal(const orb_geometry *geometry, orb_point p, orb_point q);

@@ -7,10 +7,10 @@
 
 #include "coverage.h"
 #include "error.h"
-#include "orbifold_images.h"
+#include "texels.h"
 #include "unfold.h"
 
-enum { MOST_TEXELS = 32768, MOST_CHANNELS = 4, BESIDE = 8, DEPTH = 3 };
+enum { BESIDE = 8, DEPTH = 3 };
 static const int32_t beside[BESIDE][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
 
 /* A texel that is filled or covered, where the plane is not rolled up. */
@@ -43,46 +43,21 @@ static int64_t texel_of(const orb_margin *margin, int32_t x, int32_t y) {
 
 /* --- values ------------------------------------------------------------------------------------------------------- */
 
-static double value_at(const orb_image *image, int64_t texel, int channel) {
-    const size_t at = (size_t)texel * (size_t)image->channels + (size_t)channel;
-    switch (image->texel) {
-    case ORB_TEXEL_UINT8:
-        return ((const uint8_t *)image->pixels)[at];
-    case ORB_TEXEL_UINT16:
-        return ((const uint16_t *)image->pixels)[at];
-    default:
-        return ((const float *)image->pixels)[at];
-    }
-}
-
-static void write_at(const orb_image *image, int64_t texel, int channel, double value) {
-    const size_t at = (size_t)texel * (size_t)image->channels + (size_t)channel;
-    switch (image->texel) {
-    case ORB_TEXEL_UINT8:
-        ((uint8_t *)image->pixels)[at] = (uint8_t)lround(value);
-        break;
-    case ORB_TEXEL_UINT16:
-        ((uint16_t *)image->pixels)[at] = (uint16_t)lround(value);
-        break;
-    default:
-        ((float *)image->pixels)[at] = (float)value;
-    }
-}
-
 /* The image at (u, v), where a triangle lies, between the four texels around. What is not covered of these is taken from
  * where the surface goes on, `depth` times over, and then left out; false: nothing is left. */
 static bool look_up(const orb_margin *margin, int32_t triangle, const double uv[2], int depth,
-                    double value[MOST_CHANNELS]) {
+                    float value[MOST_CHANNELS]) {
     const double x = uv[0] * margin->image.width - 0.5, y = uv[1] * margin->image.height - 0.5;
     const double u = x - floor(x), v = y - floor(y);
-    double all = 0, sum[MOST_CHANNELS] = {0, 0, 0, 0}, own[MOST_CHANNELS];
+    double all = 0, sum[MOST_CHANNELS] = {0, 0, 0, 0};
+    float own[MOST_CHANNELS];
     for (int corner = 0; corner < 4; corner++) {
         const int32_t column = (int32_t)floor(x) + (corner & 1), row = (int32_t)floor(y) + corner / 2;
         const double weight = (corner & 1 ? u : 1 - u) * (corner & 2 ? v : 1 - v);
         const int64_t texel = texel_of(margin, column, row);
         bool known = texel >= 0 && margin->covered[texel] >= 0;
-        for (int c = 0; c < margin->image.channels && known; c++)
-            own[c] = value_at(&margin->image, texel, c);
+        if (known)
+            load(&margin->image, (size_t)texel, own);
         if (!known && depth > 0 && weight > 0) {
             const double middle[2] = {(column + 0.5) / margin->image.width, (row + 0.5) / margin->image.height};
             orb_laid laid = {triangle, {{1, 0}, {0, 0}, false}};
@@ -95,7 +70,7 @@ static bool look_up(const orb_margin *margin, int32_t triangle, const double uv[
             sum[c] += weight * own[c];
     }
     for (int c = 0; c < margin->image.channels && all > 0; c++)
-        value[c] = sum[c] / all;
+        value[c] = kept(&margin->image, (float)(sum[c] / all));
     return all > 0;
 }
 
@@ -156,15 +131,15 @@ static bool fill_beside(orb_margin *margin, const orb_place *from) {
         orb_place place = {from->x + beside[k][0], from->y + beside[k][1], from->laid};
         const int64_t texel = texel_of(margin, place.x, place.y);
         const double point[2] = {(place.x + 0.5) / margin->image.width, (place.y + 0.5) / margin->image.height};
-        double at[2], value[MOST_CHANNELS];
+        double at[2];
+        float value[MOST_CHANNELS];
         if (texel < 0 || margin->covered[texel] != -1)
             continue;
         unfold_walk(&margin->unfold, point, &place.laid, at);
         if (!look_up(margin, place.laid.triangle, at, DEPTH, value))
             continue;
         margin->covered[texel] = -2;
-        for (int c = 0; c < margin->image.channels; c++)
-            write_at(&margin->image, texel, c, value[c]);
+        store(&margin->image, (size_t)texel, value);
         if (!push(margin, place))
             return false;
     }
@@ -183,13 +158,8 @@ static bool fill_rings(orb_margin *margin, int32_t texels) {
 
 static orb_status check(const orb_image *image, int32_t n_triangles, const int32_t *triangles, const double *uv,
                         int32_t texels, orb_error *error) {
-    if (!image || !image->pixels || image->channels < 1 || image->channels > MOST_CHANNELS || image->width < 1 ||
-        image->height < 1 || image->width > MOST_TEXELS || image->height > MOST_TEXELS ||
-        image->texel < ORB_TEXEL_UINT8 || image->texel > ORB_TEXEL_FLOAT)
-        return error_set(error, ORB_BAD_ARGUMENT,
-                         "an image has 1 to %d channels of 8 or 16 bits or floats, and sides of "
-                         "1 to %d texels",
-                         MOST_CHANNELS, MOST_TEXELS);
+    if (!image_is_one(image))
+        return error_set(error, ORB_BAD_ARGUMENT, IMAGE_IS_NONE, MOST_CHANNELS, MOST_SIDE);
     if (n_triangles < 0 || n_triangles > INT32_MAX / 3 || (n_triangles > 0 && (!triangles || !uv)) || texels < 0)
         return error_set(error, ORB_BAD_ARGUMENT, "a count is negative, or an array is missing");
     return ORB_OK;

@@ -7,7 +7,11 @@
 
 #include "error.h"
 
-enum { MOST_MOTIONS = 4096, PERIODS = 2 }; /* a square with that many copies of a tile is no picture of it */
+enum {
+    MOST_MOTIONS = 4096,
+    PERIODS = 2,
+    MOST_FACTOR = 1000
+};                               /* a square with that many copies of a tile is no picture of it */
 static const double same = 1e-4; /* beside a number with a small denominator it is that number: layouts are rounded */
 
 /* Turns of periods are halves, and centres of turns lie at multiples of 1 / 24 in a layout that has a cone in its
@@ -46,8 +50,9 @@ static bool equal(orb_motion one, orb_motion other) {
 }
 
 static bool keeps_area(orb_motion m) {
-    const double all = m.a + m.b + m.c + m.d + m.e + m.f;
-    return isfinite(all) && fabs(fabs(m.a * m.e - m.b * m.d) - 1) < same;
+    const double most = fmax(fmax(fabs(m.a), fabs(m.b)), fmax(fabs(m.d), fabs(m.e)));
+    return isfinite(m.a + m.b + m.c + m.d + m.e + m.f) && most <= MOST_FACTOR &&
+           fabs(fabs(m.a * m.e - m.b * m.d) - 1) < same;
 }
 
 /* Elements that differ by a period are one, periods last: these classes go to one another when a generator, or a period,

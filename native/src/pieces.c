@@ -42,14 +42,20 @@ static void solve(const double corner[9], const double point[3], double weight[3
         weight[c] /= total;
 }
 
+static int32_t first_piece(const orb_embedding *embedding, int32_t triangle) {
+    const orb_surface *surface = embedding->surface;
+    int32_t first = embedding->input_corners[3 * (size_t)triangle] / 3;
+    while (surface->parent && first > 0 && input_of(surface, first - 1) == triangle)
+        first--;
+    return first;
+}
+
 void pieces_find(const orb_embedding *embedding, int32_t triangle, const double barycentric[3], int32_t *piece,
                  double weight[3]) {
     const orb_surface *surface = embedding->surface;
     double best = -INFINITY, corner[9], trial[3];
-    int32_t first = embedding->input_corners[3 * (size_t)triangle] / 3;
-    while (surface->parent && first > 0 && input_of(surface, first - 1) == triangle)
-        first--;
-    for (int32_t t = first; t < embedding->mesh->n_triangles && input_of(surface, t) == triangle; t++) {
+    for (int32_t t = first_piece(embedding, triangle);
+         t < embedding->mesh->n_triangles && input_of(surface, t) == triangle; t++) {
         corners_in_input(embedding, t, triangle, corner);
         solve(corner, barycentric, trial);
         const double least = fmin(trial[0], fmin(trial[1], trial[2]));
@@ -70,4 +76,30 @@ void pieces_join(const orb_embedding *embedding, int32_t piece, const double wei
         corners_in_input(embedding, piece, *triangle, corner);
     for (int k = 0; k < 3; k++)
         barycentric[k] = weight[0] * corner[k] + weight[1] * corner[3 + k] + weight[2] * corner[6 + k];
+}
+
+int pieces_of_side(const orb_embedding *embedding, int32_t corner, orb_side_part parts[2]) {
+    const orb_surface *surface = embedding->surface;
+    const int32_t triangle = corner / 3;
+    const int end = (corner + 1 - 3 * triangle) % 3, apart = (end + 1) % 3;
+    int n = 0;
+    for (int32_t t = first_piece(embedding, triangle);
+         t < embedding->mesh->n_triangles && input_of(surface, t) == triangle; t++) {
+        double place[9];
+        corners_in_input(embedding, t, triangle, place);
+        for (int c = 0; c < 3 && n < 2; c++) {
+            const int next = (c + 1) % 3;
+            if (place[3 * c + apart] != 0 || place[3 * next + apart] != 0)
+                continue;
+            const bool turned = place[3 * c + end] > place[3 * next + end];
+            const int from = turned ? next : c, to = turned ? c : next;
+            parts[n++] = (orb_side_part){t, from, to, {place[3 * from + end], place[3 * to + end]}};
+        }
+    }
+    if (n == 2 && parts[0].at[0] > parts[1].at[0]) {
+        const orb_side_part last = parts[0];
+        parts[0] = parts[1];
+        parts[1] = last;
+    }
+    return n;
 }

@@ -15,4 +15,13 @@ void pieces_find(const orb_embedding *embedding, int32_t triangle, const double 
 void pieces_join(const orb_embedding *embedding, int32_t piece, const double weight[3], int32_t *triangle,
                  double barycentric[3]);
 
+/* A side of an input triangle is embedded as one side of a piece, or two. */
+typedef struct orb_side_part {
+    int32_t piece, from, to; /* the piece, and its corners at both ends */
+    double at[2];            /* of these, along the side: 0 at its first corner */
+} orb_side_part;
+
+/* The parts of the side that begins with this corner of all corners of the input, in turn. Returns their number. */
+int pieces_of_side(const orb_embedding *embedding, int32_t corner, orb_side_part parts[2]);
+
 #endif

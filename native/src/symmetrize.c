@@ -8,9 +8,10 @@
 
 #include "bands.h"
 #include "error.h"
+#include "texels.h"
 #include "wallpaper.h"
 
-enum { MOST_CHANNELS = 4, MARGIN = 12 };
+enum { MARGIN = 12 };
 static const float enough = 1e-3f; /* of a texel that is painted: then it is */
 
 /* A part of a row, from a column on and around the image. */
@@ -35,7 +36,6 @@ typedef struct orb_painting {
 } orb_painting;
 
 /* The loops below, compiled for each kind of image: `kind` is the image without size. */
-#define ALWAYS_INLINE static inline __attribute__((always_inline))
 #define OF_EACH_KIND(loop)                                                                                             \
     static void loop(void *user, int32_t first, int32_t last) {                                                        \
         const orb_painting *work = user;                                                                               \
@@ -58,42 +58,6 @@ static inline size_t texel_at(const orb_wallpaper *paper, int32_t row, int32_t c
 
 static inline size_t strip_texel(const orb_wallpaper *paper, const orb_strip *strip, int32_t k) {
     return texel_at(paper, strip->row, wallpaper_wrap(strip->column + k, paper->width));
-}
-
-ALWAYS_INLINE size_t texel_bytes(const orb_image *image) {
-    static const size_t bytes[] = {sizeof(uint8_t), sizeof(uint16_t), sizeof(float)};
-    return bytes[image->texel] * (size_t)image->channels;
-}
-
-ALWAYS_INLINE void load(const orb_image *image, size_t texel, float value[MOST_CHANNELS]) {
-    const size_t at = texel * (size_t)image->channels;
-    for (int c = 0; c < image->channels; c++)
-        if (image->texel == ORB_TEXEL_FLOAT)
-            value[c] = ((const float *)image->pixels)[at + (size_t)c];
-        else if (image->texel == ORB_TEXEL_UINT8)
-            value[c] = ((const uint8_t *)image->pixels)[at + (size_t)c];
-        else
-            value[c] = ((const uint16_t *)image->pixels)[at + (size_t)c];
-}
-
-/* What the image keeps of a value. */
-ALWAYS_INLINE float kept(const orb_image *image, float value) {
-    if (image->texel == ORB_TEXEL_FLOAT)
-        return value;
-    const float most = image->texel == ORB_TEXEL_UINT8 ? UINT8_MAX : UINT16_MAX;
-    return (float)(int32_t)((value < 0 ? 0 : value > most ? most : value) + 0.5f);
-}
-
-/* Values that `kept` gave. */
-ALWAYS_INLINE void store(const orb_image *image, size_t texel, const float value[MOST_CHANNELS]) {
-    const size_t at = texel * (size_t)image->channels;
-    for (int c = 0; c < image->channels; c++)
-        if (image->texel == ORB_TEXEL_FLOAT)
-            ((float *)image->pixels)[at + (size_t)c] = value[c];
-        else if (image->texel == ORB_TEXEL_UINT8)
-            ((uint8_t *)image->pixels)[at + (size_t)c] = (uint8_t)value[c];
-        else
-            ((uint16_t *)image->pixels)[at + (size_t)c] = (uint16_t)value[c];
 }
 
 /* What a texel that is not of the tile is by the tile, where it goes to the inside of the tile, as nearly all do. */
@@ -390,13 +354,10 @@ static orb_status gather(orb_painting *work, int32_t threads, orb_error *error) 
 
 static orb_status check(const orb_wallpaper *paper, const orb_image *image, orb_source source, const uint8_t *painted,
                         const int32_t area[4], orb_error *error) {
-    if (!paper || !image || !image->pixels || image->channels < 1 || image->channels > MOST_CHANNELS ||
-        image->texel < ORB_TEXEL_UINT8 || image->texel > ORB_TEXEL_FLOAT || source < ORB_FROM_TILE ||
-        source > ORB_FROM_PAINTED || (source == ORB_FROM_PAINTED && !painted))
-        return error_set(error, ORB_BAD_ARGUMENT,
-                         "an image has 1 to %d channels of 8 or 16 bits or floats, and what is "
-                         "painted is needed where that is the source",
-                         MOST_CHANNELS);
+    if (!paper || source < ORB_FROM_TILE || source > ORB_FROM_PAINTED || (source == ORB_FROM_PAINTED && !painted))
+        return error_set(error, ORB_BAD_ARGUMENT, "there is no such source, or what is painted is missing");
+    if (!image_is_one(image))
+        return error_set(error, ORB_BAD_ARGUMENT, IMAGE_IS_NONE, MOST_CHANNELS, MOST_SIDE);
     if (image->width != paper->width || image->height != paper->height)
         return error_set(error, ORB_BAD_ARGUMENT, "the image has %d x %d texels, and was expected to have %d x %d",
                          (int)image->width, (int)image->height, (int)paper->width, (int)paper->height);

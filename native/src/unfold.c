@@ -143,16 +143,18 @@ static bool weights_of(const orb_unfold *unfold, int32_t triangle, complex_numbe
     return true;
 }
 
-/* The point of a triangle that has these weights, where they are not below 0. */
-static complex_number within(const orb_unfold *unfold, int32_t triangle, const double weight[3]) {
-    complex_number sum = 0;
-    double all = 0;
-    for (int c = 0; c < 3; c++) {
-        const double own = fmax(weight[c], 0);
-        sum += own * corner_of(unfold, 3 * triangle + c);
-        all += own;
+/* The point of a triangle's sides that is nearest to a point. */
+static complex_number beside_triangle(const orb_unfold *unfold, int32_t triangle, complex_number z) {
+    complex_number nearest = corner_of(unfold, 3 * triangle);
+    for (int32_t corner = 3 * triangle; corner < 3 * triangle + 3; corner++) {
+        const complex_number from = corner_of(unfold, corner), along = corner_of(unfold, next_corner(corner)) - from;
+        const double length = creal(along) * creal(along) + cimag(along) * cimag(along);
+        const double part = length > 0 ? creal(conj(along) * (z - from)) / length : 0;
+        const complex_number point = from + fmin(fmax(part, 0), 1) * along;
+        if (cabs(z - point) < cabs(z - nearest))
+            nearest = point;
     }
-    return sum / all;
+    return nearest;
 }
 
 void unfold_walk(const orb_unfold *unfold, const double point[2], orb_laid *laid, double at[2]) {
@@ -166,7 +168,7 @@ void unfold_walk(const orb_unfold *unfold, const double point[2], orb_laid *laid
             break;
         z = undone(&laid->by, number(point));
     }
-    if (weights_of(unfold, laid->triangle, z, weight))
-        z = within(unfold, laid->triangle, weight);
+    if (!weights_of(unfold, laid->triangle, z, weight) || fmin(fmin(weight[0], weight[1]), weight[2]) < 0)
+        z = beside_triangle(unfold, laid->triangle, z);
     pair_of(z, at);
 }

@@ -8,8 +8,9 @@
 #include "bands.h"
 #include "coverage.h"
 #include "error.h"
+#include "texels.h"
 
-enum { MOST_TEXELS = 32768, CORNERS = 64, AROUND = 2 };
+enum { CORNERS = 64, AROUND = 2 };
 static const double whole_number = 1e-6;               /* what a place in texels may be off one */
 static const double stretched = 1.2;                   /* from where on one point does not stand for a texel */
 static const double generic[2] = {0.213731, 0.137127}; /* on no centre and no mirror */
@@ -300,9 +301,9 @@ orb_status orb_wallpaper_create(int32_t width, int32_t height, int32_t n_motions
     if (!wallpaper || n_motions < 0 || (n_motions > 0 && !motions) || n_triangles < 0 || (n_triangles > 0 && !uv))
         return error_set(error, ORB_BAD_ARGUMENT, "a count is negative, or an array is missing");
     *wallpaper = NULL;
-    if (width < 1 || height < 1 || width > MOST_TEXELS || height > MOST_TEXELS)
+    if (width < 1 || height < 1 || width > MOST_SIDE || height > MOST_SIDE)
         return error_set(error, ORB_BAD_ARGUMENT, "an image of %d x %d texels: a side has 1 to %d", (int)width,
-                         (int)height, MOST_TEXELS);
+                         (int)height, MOST_SIDE);
     orb_wallpaper *paper = calloc(1, sizeof *paper);
     if (!paper)
         return error_memory(error);

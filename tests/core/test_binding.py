@@ -28,6 +28,7 @@ STRUCTURES = {
     "orb_suggestion": binding.Suggestion,
     "orb_map_report": binding.MapReport,
     "orb_map_distortion": binding.MapDistortion,
+    "orb_stretch": binding.Stretch,
     "orb_image": binding.Image,
     "orb_wallpaper_view": binding.WallpaperView,
 }

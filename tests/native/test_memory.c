@@ -65,6 +65,10 @@ static orb_status maps(const sample_mesh *mesh, const void *request, double *roo
         status = orb_surface_map(a, b, 0, NULL, NULL, triangles, room, NULL, &error);
     if (status == ORB_OK)
         status = orb_surface_map_distortion(a, b, NULL, NULL, &distortion, &error);
+    orb_trace *trace = NULL;
+    if (status == ORB_OK)
+        status = orb_surface_map_trace(a, b, 2, (int32_t[]){0, 4}, &trace, &error);
+    orb_trace_free(trace);
     if (status == ORB_OK)
         status = orb_landmark_sequence(&arrays, asked->n_cones, asked->cones, NULL, sequence, &error);
     orb_embedding_free(a);

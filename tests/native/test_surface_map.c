@@ -92,6 +92,40 @@ static orb_status embed_along(const sample_mesh *mesh, const char *signature, in
 
 /* --- identities, inverses ---------------------------------------------------------------------------------------- */
 
+/* All edges from both sides, on a mesh that is the same or has the same number of triangles: without gaps in `at`, the
+ * weights of places, and between stretches on sides. On the mesh itself along sides only. */
+static void check_courses(const orb_embedding *a, const orb_embedding *b, int32_t n_triangles) {
+    int32_t *corners = sample_allocate(3 * (size_t)n_triangles, sizeof *corners), wrong = 0, edge = -1;
+    orb_trace *trace = NULL;
+    orb_error error;
+    for (int32_t h = 0; h < 3 * n_triangles; h++)
+        corners[h] = h;
+    CHECK(orb_surface_map_trace(a, b, 3 * n_triangles, corners, &trace, &error) == ORB_OK);
+    const int64_t n = trace ? orb_trace_count(trace) : 0;
+    orb_stretch *stretches = sample_allocate((size_t)n, sizeof *stretches);
+    if (trace)
+        orb_trace_read(trace, stretches);
+    for (int64_t i = 0; i < n; i++) {
+        const orb_stretch *s = &stretches[i], *before = s - 1;
+        const bool first = s->edge != edge, last = i + 1 == n || s[1].edge != s->edge;
+        const double *from = s->barycentric, *to = s->barycentric + 3;
+        wrong += first ? s->edge != edge + 1 || s->at[0] != 0 : s->at[0] != before->at[1];
+        wrong += !(s->at[1] >= s->at[0]) || (last && s->at[1] != 1);
+        for (int c = 0; c < 3; c++)
+            wrong += !(from[c] >= 0 && to[c] >= 0 && fabs(to[0] + to[1] + to[2] - 1) < 1e-14);
+        if (a == b)
+            wrong += !((from[0] == 0 && to[0] == 0) || (from[1] == 0 && to[1] == 0) || (from[2] == 0 && to[2] == 0));
+        else if (!first)
+            wrong += a->surface->parent || b->surface->parent ? 0 : from[0] != 0 && from[1] != 0 && from[2] != 0;
+        edge = s->edge;
+    }
+    CHECK(edge == 3 * n_triangles - 1);
+    CHECK(wrong == 0);
+    orb_trace_free(trace);
+    free(stretches);
+    free(corners);
+}
+
 /* A mesh onto itself, its vertices and the middles of its triangles. */
 static void check_identity(const char *signature, const sample_mesh *mesh, const orb_embedding *embedding) {
     mapped all = map_vertices(embedding, embedding);
@@ -112,6 +146,7 @@ static void check_identity(const char *signature, const sample_mesh *mesh, const
     }
     CHECK(elsewhere == 0);
     CHECK_NEAR(off, 0, 1e-10);
+    check_courses(embedding, embedding, mesh->n_triangles);
     orb_map_distortion distortion;
     CHECK(orb_surface_map_distortion(embedding, embedding, NULL, NULL, &distortion, NULL) == ORB_OK);
     CHECK(distortion.flipped == 0 && distortion.left_out == 0);
@@ -145,6 +180,7 @@ static void check_there_and_back(const char *signature, const sample_mesh *mesh,
                 CHECK(memcmp(p, other.vertices + 3 * picked[k], sizeof p) == 0);
             }
         }
+        check_courses(embedding, second, mesh->n_triangles);
         orb_map_distortion distortion = {0};
         CHECK(orb_surface_map_distortion(embedding, second, NULL, NULL, &distortion, NULL) == ORB_OK);
         CHECK(distortion.flipped == 0);

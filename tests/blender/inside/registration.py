@@ -151,7 +151,8 @@ def check_redo_panels_show_all_settings():
     """Each setting in one of the situations where it matters; where an operator does not draw them, Blender does."""
     situations = [
         {"signature": signature, "geometry": part("core").geometry_of(signature), "kind": kind, "holes": "fill",
-         "weights": "cotan", "_searched": True, "_extra_borders": 1}
+         "weights": "cotan", "_searched": True, "_extra_borders": 1,
+         "uv_maps": True}
         for signature, kind in (("442", "double"), ("432", "flipped"), ("237", "zero_area"))
     ]
     for cls in part("operators").CLASSES:
