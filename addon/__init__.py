@@ -14,7 +14,8 @@ bl_info = {
 import bpy
 
 from . import (
-    cli, handlers, image_edits, live, operators, panels, preferences, previews, properties, surface, transfer_settings, viewing,
+    cli, handlers, image_edits, live, operators, panels, preferences, previews, properties, surface, transfer_settings,
+    viewing,
 )
 from .api import OrbifoldError, check, sphere, suggest, transfer, unwrap
 from .panels import menus

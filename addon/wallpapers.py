@@ -14,6 +14,7 @@ from . import baking, core, formulas
 FINER = 4  # points along each side of a texel, at which a formula is computed
 THINNEST = 0.004  # of the period: lines of patterns are not thinner
 AT_ONCE = 2**20  # points
+LEAST = 1e-9  # of weights
 LARGEST = 32768  # texels along a side
 
 Moves = list[Callable[[np.ndarray], np.ndarray]]
@@ -66,34 +67,61 @@ def _chosen(pattern: formulas.Pattern, points: np.ndarray) -> np.ndarray:
 
 
 def of_picture(
-    picture: np.ndarray, width: int, height: int, tile: np.ndarray, sides: np.ndarray, whole: bool = False,
-    wanted: np.ndarray | None = None,
+    picture: np.ndarray, wallpaper: core.Wallpaper, tile: np.ndarray, sides: np.ndarray, blend: float,
+    whole: bool = False,
 ) -> np.ndarray:
-    """(height, width, 4) float32: on the tile (m, 3, 2) what a picture (h, w, 4) float32 has that is laid over the
-    tile's bounding box; beside it, period by period, what is there. Not yet symmetric.
+    """(height, width, 4) float32: a picture (h, w, 4) float32 that is laid over the tile (m, 3, 2) and its
+    surroundings, folded by the group: each place gets the mean of what its copies have in the picture, weighted by 1 on
+    the tile and less and less around it. So it goes on without a break where the tile meets its copies.
 
-    sides   (2, 2) of the period, in the plane: the picture keeps its proportions, and what of it is too wide or too
-            high is cut off
-    whole   nothing is cut off, the picture is stretched
-    wanted  (height, width) bool: other texels are left black
+    sides  (2, 2) of the period, in the plane: the picture keeps its proportions, and what of it is too wide or too high
+           is cut off
+    blend  how far around the tile's border weights change, for half the root of the tile's area; at least a texel
+    whole  nothing is cut off, the picture is stretched
     """
-    low, extent = tile.reshape(-1, 2).min(0), np.ptp(tile.reshape(-1, 2), axis=0)
+    size = np.array([wallpaper.width, wallpaper.height])
+    texels = tile * size
+    area = np.abs(np.cross(texels[:, 1] - texels[:, 0], texels[:, 2] - texels[:, 0])).sum() / 2
+    reach = max(1, int(blend * np.sqrt(area) / 2))
+    low = np.floor(texels.min((0, 1))).astype(int) - reach
+    extent = np.ceil(texels.max((0, 1))).astype(int) + reach - low
+    weights = np.zeros(extent[0] * extent[1])
+    within = (texels - low) / extent
+    for first, last in baking.portions(within, *extent):
+        weights[baking.texels_of(within[first:last], *extent)[0]] = 1
+    weights = _blurred(weights.reshape(extent[::-1]), reach).ravel()
     if not whole:
-        picture = _cut_to(picture, extent * np.linalg.norm(sides, axis=1))
-    texels = np.maximum(np.rint(extent * (width, height)).astype(int), 1)
-    fine = resized(picture, *np.minimum(texels, picture.shape[1::-1]))
-    places = np.stack(np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height), -1)
-    places = (low + (places - low) % 1).reshape(-1, 2)
-    for first, last in baking.portions(tile, width, height):
-        where, of, barycentric = baking.texels_of(tile[first:last], width, height)
-        places[where] = np.einsum("pc,pcd->pd", barycentric, tile[first:last][of])
+        picture = _cut_to(picture, extent * np.linalg.norm(sides, axis=1) / size)
+    fine = resized(picture, *np.minimum(extent, picture.shape[1::-1]))
     half = 0.5 / np.array(fine.shape[1::-1])  # the picture's border does not repeat
-    at = np.arange(height * width) if wanted is None else np.flatnonzero(wanted)
-    pixels = np.zeros((height * width, 4), np.float32)
+    sums = np.zeros((size[1] * size[0], 5))
+    at = np.flatnonzero(weights > 0)
     for first in range(0, len(at), AT_ONCE):
         some = at[first : first + AT_ONCE]
-        pixels[some] = baking.sampled(fine, np.clip((places[some] - low) / extent, half, 1 - half))
-    return pixels.reshape(height, width, 4)
+        place = np.stack([some % extent[0], some // extent[0]], 1)
+        colours = baking.sampled(fine, np.clip((place + 0.5) / extent, half, 1 - half))
+        colours[:, :3] *= colours[:, 3:]
+        x, y = ((place + low) % size).T
+        for channel, values in enumerate((*colours.T, 1)):
+            sums[:, channel] += np.bincount(y * size[0] + x, weights[some] * values, len(sums))
+    sums = sums.astype(np.float32).reshape(size[1], size[0], 5)
+    colours, total = np.ascontiguousarray(sums[:, :, :4]), np.ascontiguousarray(sums[:, :, 4:])
+    for values in (colours, total):
+        wallpaper.symmetrize(values, "all")
+    colours[:, :, :3] /= np.maximum(colours[:, :, 3:], LEAST)
+    colours[:, :, 3:] /= np.maximum(total, LEAST)
+    return colours
+
+
+def _blurred(values: np.ndarray, reach: int) -> np.ndarray:
+    """Means over three squares in turn, which reach so far together at most, or a texel."""
+    radius = max(1, reach // 3)
+    for _ in range(3 if reach >= 3 else 1):
+        for axis in (0, 1):
+            padded = np.pad(values, [(radius + 1, radius) if k == axis else (0, 0) for k in (0, 1)])
+            sums = np.moveaxis(np.cumsum(padded, axis), axis, 0)
+            values = np.moveaxis(sums[2 * radius + 1 :] - sums[: -2 * radius - 1], 0, axis) / (2 * radius + 1)
+    return np.maximum(values, 0)
 
 
 def _cut_to(picture: np.ndarray, extent: np.ndarray) -> np.ndarray:

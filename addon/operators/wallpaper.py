@@ -8,7 +8,7 @@ from typing import Optional
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
 from .. import blender_mesh, core, formulas, image_edits, layouts, materials, procedural, textures, wallpapers
 from .viewing import LayoutOperator
@@ -18,7 +18,6 @@ SIZE = dict(
     "1.73 times as high as it is wide", default=2048, min=16, max=8192,
 )
 NOT_PERIODIC = 1e-4  # of the unit square
-ALONE = 65535  # of Wallpaper.to_tile: a texel that keeps what it has
 Painted = tuple[str, np.ndarray, Optional[bpy.types.Image]]  # a name, (h, w, 4), and the image it is to be like
 
 
@@ -36,7 +35,7 @@ class WallpaperOperator(LayoutOperator):
             name, pixels, like = self.painted(layout, wallpaper, sides)
             if like is None or not like.is_float:
                 pixels = np.rint(255 * np.clip(pixels, 0, 1)).astype(np.uint8)
-            wallpaper.symmetrize(pixels, self.source)
+            wallpaper.symmetrize(pixels, "tile")
         except core.OrbifoldError as error:
             raise blender_mesh.BlenderMeshError(str(error)) from error
         image = textures.new_image(f"{name} {layout.signature}", pixels, like)
@@ -70,7 +69,6 @@ class OBJECT_OT_orbifold_pattern_image(WallpaperOperator, bpy.types.Operator):
         name="Pattern", items=[(key, one.name, one.description) for key, one in formulas.PATTERNS.items()]
     )
     size: IntProperty(**SIZE)
-    source = "tile"
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         chosen = context.scene.orbifold_view.pattern
@@ -100,17 +98,14 @@ class IMAGE_OT_orbifold_wallpaper(WallpaperOperator, bpy.types.Operator):
     bl_label = "Wallpaper from Image"
     bl_description = (
         "Make an image with the symmetry of the layout from any picture: the part that lies over the tile is repeated "
-        "by the group. The picture stays as it is; the object gets the new one"
+        "by the group, and blended where it meets itself. The picture stays as it is; the object gets the new one"
     )
 
     picture: StringProperty(name="Picture", description="The image to cut the tile from")
     size: IntProperty(**SIZE)
-    source: EnumProperty(
-        name="From",
-        items=(
-            ("tile", "Tile", "What lies over the tile is repeated: sharp, and the picture meets itself at the seams"),
-            ("all", "All Copies", "Each place gets the mean of all its copies in the picture: soft, without edges"),
-        ),
+    blend: FloatProperty(
+        name="Blend", description="How far the tile and its copies are blended with one another. 0: they meet with a "
+        "break wherever the picture is not the same", default=0.5, min=0, max=1, subtype="FACTOR",
     )
     whole: BoolProperty(
         name="Whole Picture", description="Stretch the picture over the tile. Off: its proportions are kept, and what "
@@ -121,7 +116,7 @@ class IMAGE_OT_orbifold_wallpaper(WallpaperOperator, bpy.types.Operator):
         layout = self.layout
         layout.use_property_split = True
         layout.prop_search(self, "picture", bpy.data, "images")
-        for name in ("size", "source", "whole"):
+        for name in ("size", "blend", "whole"):
             layout.prop(self, name)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
@@ -138,9 +133,7 @@ class IMAGE_OT_orbifold_wallpaper(WallpaperOperator, bpy.types.Operator):
         if problem is not None:
             raise blender_mesh.BlenderMeshError(problem)
         pixels = image_edits.read_colours(picture)
-        kept = np.isin(wallpaper.to_tile, (0, ALONE)) if self.source == "tile" else None
-        size = wallpaper.width, wallpaper.height
-        return picture.name, wallpapers.of_picture(pixels, *size, layout.uv, sides, self.whole, kept), picture
+        return picture.name, wallpapers.of_picture(pixels, wallpaper, layout.uv, sides, self.blend, self.whole), picture
 
 
 CLASSES = (OBJECT_OT_orbifold_pattern_image, IMAGE_OT_orbifold_wallpaper)

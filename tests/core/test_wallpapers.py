@@ -72,28 +72,42 @@ def test_smaller_pictures_are_means_of_what_they_cover(width, height):
     assert bare("wallpapers").resized(picture, 1, 1)[0, 0, :3].max() < 1  # what cannot be seen has no colour
 
 
+def folded(picture, size=80, sides=EQUAL, blend=0.0, whole=False):
+    wallpaper = core.Wallpaper(size, size, [TURN[2]], HALF)
+    return bare("wallpapers").of_picture(picture, wallpaper, HALF, sides, blend, whole)
+
+
+def ramps(height, width):
+    """u and v as red and green."""
+    v, u = (np.mgrid[:height, :width] + 0.5) / [[[height]], [[width]]]
+    return np.stack([u, v, 0 * u, 1 + 0 * u], 2).astype(np.float32)
+
+
 def test_a_picture_lies_over_the_tile_and_is_folded_to_the_rest():
-    wallpapers = bare("wallpapers")
-    v, u = (np.mgrid[:60, :120] + 0.5) / [[[60]], [[120]]]
-    picture = np.stack([u, v, 0 * u, 1 + 0 * u], 2).astype(np.float32)
     for whole in (False, True):  # the tile is twice as wide as high, as the picture is
-        pixels = wallpapers.of_picture(picture, 80, 80, HALF, EQUAL, whole)
-        core.Wallpaper(80, 80, [TURN[2]], HALF).symmetrize(pixels)
+        pixels = folded(ramps(60, 120), whole=whole)
         there = (np.arange(80) + 0.5) / 80
-        assert np.abs(pixels[40:, :, 0] - there).max() < 0.01  # v from -0.5 to 0 is the image's upper half
-        assert np.abs(pixels[40:, :, 1] - there[::2, None] - 0.00625).max() < 0.02
-        assert (pixels[:40] == pixels[40:][::-1, ::-1]).all()
+        inside = pixels[43:77, 3:77]  # v from -0.5 to 0 is the image's upper half
+        assert np.abs(inside[:, :, 0] - there[3:77]).max() < 0.03
+        assert np.abs(inside[:, :, 1] - ((np.arange(3, 37) + 0.5) / 40)[:, None]).max() < 0.03
+        assert np.abs(pixels - pixels[::-1, ::-1]).max() < 1e-6
+
+
+def test_tile_and_copies_are_blended_without_a_break():
+    def steps(pixels):
+        return max(np.abs(np.roll(pixels, 1, axis) - pixels)[:, :, :3].max() for axis in (0, 1))
+
+    waves = 0.5 + 0.5 * np.cos(3 * ramps(160, 320))
+    waves[:, :, 3] = 1
+    assert steps(folded(waves, 160)) > 0.25 and steps(folded(waves, 160, blend=0.8)) < 0.1
 
 
 def test_proportions_are_kept_unless_the_whole_picture_is_asked_for():
-    wallpapers = bare("wallpapers")
-    v, u = (np.mgrid[:90, :90] + 0.5) / 90
-    picture = np.stack([u, v, 0 * u, 1 + 0 * u], 2).astype(np.float32)
-    cut, whole = (wallpapers.of_picture(picture, 60, 60, HALF, EQUAL, w)[30:] for w in (False, True))
-    assert abs(np.ptp(cut[:, :, 1]) - 0.5) < 0.03 and abs(cut[:, :, 1].mean() - 0.5) < 0.01
-    assert np.ptp(whole[:, :, 1]) > 0.95 and np.ptp(cut[:, :, 0]) > 0.95
-    high = wallpapers.of_picture(picture, 60, 60, HALF, np.diag([1.0, 2.0]), False)[30:]  # the tile is a square then
-    assert np.abs(high - whole).max() < 1e-6
+    cut, whole = (folded(ramps(90, 90), whole=whole)[42:78, 2:78] for whole in (False, True))
+    assert abs(np.ptp(cut[:, :, 1]) - 0.45) < 0.06 and abs(cut[:, :, 1].mean() - 0.5) < 0.02
+    assert np.ptp(whole[:, :, 1]) > 0.8 and np.ptp(cut[:, :, 0]) > 0.85
+    high = folded(ramps(90, 90), sides=np.diag([1.0, 2.0]))[42:78, 2:78]  # the tile is a square then
+    assert np.abs(high - whole).max() < 0.03
 
 
 def test_the_difference_is_that_of_the_copies():
