@@ -14,6 +14,7 @@
 #   ./build.sh package [--blender PATH]   build/orbifold_uv-VERSION.zip, to install in Blender, and build/repository/,
 #                                         an extension repository that Blender 4.2 and later can subscribe to
 #   ./build.sh bench [ROUNDS [MESHES]]    seconds of each stage on several meshes
+#   ./build.sh fuzz [SECONDS]             libFuzzer on meshes and images, so long each; the corpus in tests/fuzz/ grows
 #   ./build.sh docs [--blender PATH]      the pictures of docs/orbifolds.md and docs/batch.md, rendered
 #   ./build.sh docs window [NAME...]      the pictures of Blender's window, of a real one on a virtual screen
 #   ./build.sh docs cones                 the tables of docs/cones.md, measured (an hour)
@@ -94,7 +95,28 @@ want_screen() {
     want libgl1-mesa-dri
 }
 
-want_docs() {
+want_# Both targets for so many seconds each, from the kept corpus on; what they find is left in build/fuzz.
+fuzz() {
+    local name folder seconds=${arguments[0]:-60} binary
+    want_native
+    want clang clang
+    want_python sys
+    install_missing
+    make_native fuzz
+    export PYTHONDONTWRITEBYTECODE=1
+    for name in embed images; do
+        folder=$build/fuzz/$name binary=$build/native/fuzz/fuzz_$name
+        "$(find_python sys)" "$root/tests/fuzz/corpus.py" unpack "$root/tests/fuzz/$name.txt" "$folder"
+        "$binary" -max_total_time="$seconds" -max_len=256 -timeout=30 -artifact_prefix="$folder-" "$folder" \
+            2>"$folder.log" || die "fuzz_$name found something: $folder.log"
+        tail -n 1 "$folder.log"
+        mkdir -p "$folder.least"
+        "$binary" -merge=1 "$folder.least" "$folder" 2>>"$folder.log"
+        "$(find_python sys)" "$root/tests/fuzz/corpus.py" pack "$folder.least" "$root/tests/fuzz/$name.txt"
+    done
+}
+
+docs() {
     want_blender
     want_python numpy
     want pngquant pngquant
@@ -403,7 +425,7 @@ main() {
         blender=$(realpath -s -- "$(command -v -- "$blender")" 2>/dev/null) || die "--blender: there is no such program"
     fi
     case $verb in
-        run | bench | docs) "$verb" ;;
+        run | bench | fuzz | docs) "$verb" ;;
         test | native | package | clean | deps)
             [ ${#arguments[@]} = 0 ] || die "$verb takes no argument '${arguments[0]}'"
             case $verb in test) run_tests ;; *) "$verb" ;; esac ;;

@@ -57,13 +57,12 @@ int64_t certificate_find_flipped(const orb_embedding *embedding, bool *flipped) 
 }
 
 static orb_status check_orientation(orb_embedding *embedding, orb_error *error) {
-    int32_t named[ORB_MAX_ELEMENTS], n_named = 0;
+    orb_blamed blamed = {0};
     int64_t flipped = 0, without_area = 0;
     for (int32_t t = 0; t < embedding->mesh->n_triangles; t++) {
         if (!is_flipped(embedding, t))
             continue;
-        if (n_named < ORB_MAX_ELEMENTS)
-            named[n_named++] = t;
+        mesh_blame(embedding->mesh, t, &blamed);
         flipped++;
         without_area += triangle_measure(embedding->mesh, t).double_area == 0;
     }
@@ -71,15 +70,11 @@ static orb_status check_orientation(orb_embedding *embedding, orb_error *error) 
     if (flipped == 0)
         return ORB_OK;
     if (flipped == without_area)
-        return error_set_elements(error, ORB_ZERO_AREA_TRIANGLE, ORB_TRIANGLE, named, n_named, flipped,
-                                  "%lld %s without area %s flat on the tile, first triangle %d: dissolve degenerate "
-                                  "faces",
-                                  (long long)flipped, flipped == 1 ? "triangle" : "triangles",
-                                  flipped == 1 ? "stays" : "stay", (int)named[0]);
-    return error_set_elements(error, ORB_CERTIFICATE_FAILED, ORB_TRIANGLE, named, n_named, flipped,
-                              "%lld %s flipped on the tile, first triangle %d: pick a cone near it, put many cones in "
-                              "the sequence of a short walk, or raise the clamp",
-                              (long long)flipped, flipped == 1 ? "triangle is" : "triangles are", (int)named[0]);
+        return mesh_blame_error(error, ORB_ZERO_AREA_TRIANGLE, &blamed, "triangle without area stays flat on the tile",
+                                "triangles without area stay flat on the tile", "dissolve degenerate faces");
+    return mesh_blame_error(error, ORB_CERTIFICATE_FAILED, &blamed, "triangle is flipped on the tile",
+                            "triangles are flipped on the tile",
+                            "pick a cone near it, put many cones in the sequence of a short walk, or raise the clamp");
 }
 
 /* An edge's length as the triangle of this half-edge has it. */
@@ -130,6 +125,15 @@ static double missing_angle(const orb_embedding *embedding, int32_t mark, const 
     return full - full / embedding->surface->order[mark];
 }
 
+/* The vertex itself, or for one of a refinement one of the user's triangle that it lies in. */
+static int32_t input_vertex_near(const orb_embedding *embedding, int32_t vertex) {
+    const orb_surface *surface = embedding->surface;
+    if (vertex < surface->n_input_vertices)
+        return vertex;
+    const int32_t triangle = embedding->mesh->origin[embedding->mesh->vertex_halfedge[vertex] / 3];
+    return surface->input_triangles[triangle >= 0 ? 3 * (size_t)triangle : 0];
+}
+
 /* Angle sums at the vertices, and the area of all triangles. */
 static orb_status check_angles(orb_embedding *embedding, double *area, orb_error *error) {
     const orb_mesh *mesh = embedding->mesh;
@@ -167,6 +171,7 @@ static orb_status check_angles(orb_embedding *embedding, double *area, orb_error
     free(border);
     if (embedding->report.angle_residual < angle_tolerance)
         return ORB_OK;
+    worst = input_vertex_near(embedding, worst);
     return error_set_elements(
         error, ORB_CERTIFICATE_FAILED, ORB_VERTEX, &worst, 1, 1,
         "the angles around vertex %d are off by %.1e: dissolve degenerate faces near it, or pick a "

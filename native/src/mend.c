@@ -212,9 +212,11 @@ static int64_t untangle(mender *m, bool as_float, double budget) {
         if (bad == 0 || m->work >= end)
             return bad;
         bool stuck = bad >= least - least / 8;
-        if (stuck)
-            rings = as_float && rings > 15 ? 0 : 2 * rings + 1; /* for a float not the whole sphere */
-        else if (bad < least / 2 && least < INT64_MAX)
+        if (stuck && as_float && rings > 15) /* for a float not the whole sphere */
+            rings = 0;
+        else if (stuck && rings < m->mesh->n_vertices)
+            rings = 2 * rings + 1;
+        else if (!stuck && bad < least / 2 && least < INT64_MAX)
             rings /= 2;
         least = bad < least ? bad : least;
         find_region(m, as_float, rings);
@@ -228,14 +230,14 @@ static int64_t untangle(mender *m, bool as_float, double budget) {
 }
 
 static orb_status error_flipped(const mender *m, orb_error *error) {
-    orb_found found = {0};
+    orb_blamed blamed = {0};
     for (int32_t t = 0; t < m->mesh->n_triangles; t++)
         if (is_bad(m, t, false))
-            found_add(&found, t);
-    return error_set_elements(error, ORB_CERTIFICATE_FAILED, ORB_TRIANGLE, found.elements, found.entries, found.found,
-                              "%lld triangles of the map onto the whole sphere are flipped and could not be mended: "
-                              "pick a cone nearer to them, or split the mesh along the seam",
-                              (long long)found.found);
+            mesh_blame(m->mesh, t, &blamed);
+    return mesh_blame_error(error, ORB_CERTIFICATE_FAILED, &blamed,
+                            "triangle of the map onto the whole sphere is flipped and could not be mended",
+                            "triangles of the map onto the whole sphere are flipped and could not be mended",
+                            "pick a cone nearer to them, or split the mesh along the seam");
 }
 
 orb_status mend_sphere(const orb_mesh *mesh, double *positions, int64_t *mended, orb_error *error) {

@@ -351,6 +351,7 @@ orb_status mesh_copy(const orb_mesh *mesh, orb_mesh **result, orb_error *error) 
     copy->edge = duplicate(mesh->edge, m3, sizeof *copy->edge, &fine);
     copy->edge_halfedge = duplicate(mesh->edge_halfedge, mesh->n_edges, sizeof *copy->edge_halfedge, &fine);
     copy->vertex_halfedge = duplicate(mesh->vertex_halfedge, n, sizeof *copy->vertex_halfedge, &fine);
+    copy->origin = mesh->origin ? duplicate(mesh->origin, mesh->n_triangles, sizeof *copy->origin, &fine) : NULL;
     if (fine)
         return ORB_OK;
     mesh_free(copy);
@@ -367,7 +368,30 @@ void mesh_free(orb_mesh *mesh) {
     free(mesh->edge);
     free(mesh->edge_halfedge);
     free(mesh->vertex_halfedge);
+    free(mesh->origin);
     free(mesh);
+}
+
+void mesh_blame(const orb_mesh *mesh, int32_t triangle, orb_blamed *blamed) {
+    const int32_t origin = mesh->origin ? mesh->origin[triangle] : triangle;
+    if (origin >= 0)
+        found_add(&blamed->triangles, origin);
+    else
+        found_add(&blamed->filling, mesh->triangles[3 * (size_t)triangle]);
+}
+
+orb_status mesh_blame_error(orb_error *error, orb_status status, const orb_blamed *blamed, const char *one,
+                            const char *many, const char *advice) {
+    const orb_found *found = &blamed->triangles;
+    if (found->found > 0)
+        return error_set_elements(error, status, ORB_TRIANGLE, found->elements, found->entries, found->found,
+                                  "%lld %s, first triangle %d: %s", (long long)found->found,
+                                  found->found == 1 ? one : many, (int)found->elements[0], advice);
+    found = &blamed->filling;
+    return error_set_elements(
+        error, status, ORB_VERTEX, found->elements, found->entries, found->found,
+        "of the filling of a hole %lld %s, the first at vertex %d: fill the hole in the mesh, or %s",
+        (long long)found->found, found->found == 1 ? one : many, (int)found->elements[0], advice);
 }
 
 orb_status mesh_require_connected(const orb_mesh *mesh, orb_error *error) {

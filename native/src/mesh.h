@@ -21,6 +21,8 @@ typedef struct orb_mesh {
     int32_t *vertex_halfedge; /* [n_vertices] a half-edge leaving the vertex (on a boundary: the one from which
                                   turning counter-clockwise meets the whole fan; where the surface is not orientable,
                                   one at an end of the fan); -1 if isolated */
+    int32_t *origin;          /* [n_triangles] the triangle of the user's mesh that each lies in, -1 in a filled hole;
+                                 NULL: they are the user's */
     int32_t n_used_vertices;  /* vertices that are not isolated */
     int32_t n_components;     /* of triangles joined by edges; isolated vertices do not count */
     int32_t n_boundary_loops;
@@ -37,6 +39,17 @@ typedef struct orb_turn {
     int32_t corner; /* the triangle's corner at the vertex */
     bool clockwise; /* as seen in that triangle */
 } orb_turn;
+
+/* Triangles at fault, as the user's mesh has them, and vertices of those that are none of its own. */
+typedef struct orb_blamed {
+    orb_found triangles, filling;
+} orb_blamed;
+void mesh_blame(const orb_mesh *mesh, int32_t triangle, orb_blamed *blamed);
+
+/* The status with `what` is wrong with so many triangles, of which the first is named: "3 triangles WHAT, first triangle 7"
+ * and then `advice`. */
+orb_status mesh_blame_error(orb_error *error, orb_status status, const orb_blamed *blamed, const char *one,
+                            const char *many, const char *advice);
 
 static inline int32_t halfedge_from(const orb_mesh *mesh, int32_t h) { return mesh->triangles[h]; }
 static inline int32_t halfedge_to(const orb_mesh *mesh, int32_t h) { return mesh->triangles[halfedge_next(h)]; }

@@ -8,7 +8,7 @@
 #include "error.h"
 
 enum {
-    MOST_MOTIONS = 4096,
+    MOST_MOTIONS = 1024,
     PERIODS = 2,
     MOST_FACTOR = 1000
 };                               /* a square with that many copies of a tile is no picture of it */

@@ -212,6 +212,21 @@ static orb_status describe(orb_surface *surface, const orb_mesh *mesh, orb_error
     return ORB_OK;
 }
 
+/* What the user's mesh has in the place of each triangle, for errors. */
+static orb_status note_origins(orb_surface *surface, orb_error *error) {
+    if (surface->n_closed == 0 && surface->n_halved == 0)
+        return ORB_OK;
+    const int32_t n = surface->mesh->n_triangles;
+    surface->mesh->origin = malloc((size_t)n * sizeof *surface->mesh->origin);
+    if (!surface->mesh->origin)
+        return error_memory(error);
+    for (int32_t t = 0; t < n; t++) {
+        const int32_t plain = surface->parent ? surface->parent[t] : t;
+        surface->mesh->origin[t] = plain < surface->n_input_triangles ? plain : -1;
+    }
+    return ORB_OK;
+}
+
 orb_status surface_create(const orb_mesh_arrays *arrays, const orb_request *request, const uint8_t *halve,
                           orb_surface **result, orb_error *error) {
     *result = NULL;
@@ -231,6 +246,8 @@ orb_status surface_create(const orb_mesh_arrays *arrays, const orb_request *requ
         status = find_features(surface, &input, request, error);
     if (status == ORB_OK)
         status = halve_chords(surface, halve, error);
+    if (status == ORB_OK)
+        status = note_origins(surface, error);
     mesh_free(input);
     if (status != ORB_OK) {
         surface_free(surface);

@@ -36,7 +36,7 @@ static void triangle_mean_values(const triangle_shape *shape, double part[3][2])
 /* An error that names the triangles of zero area, or of nearly none, on the edges whose weight, or one of their
  * per_edge weights, is not positive and finite. */
 static orb_status blame_triangles(const orb_mesh *mesh, const double *weights, int per_edge, orb_error *error) {
-    orb_found flat = {0}, beside = {0};
+    orb_blamed flat = {0}, beside = {0};
     for (int32_t t = 0; t < mesh->n_triangles; t++) {
         bool bad = false;
         for (int32_t h = 3 * t; h < 3 * t + 3; h++) {
@@ -46,17 +46,15 @@ static orb_status blame_triangles(const orb_mesh *mesh, const double *weights, i
         }
         if (!bad)
             continue;
-        found_add(&beside, t);
+        mesh_blame(mesh, t, &beside);
         if (triangle_measure(mesh, t).double_area == 0)
-            found_add(&flat, t);
+            mesh_blame(mesh, t, &flat);
     }
-    const orb_found *found = flat.found > 0 ? &flat : &beside;
-    return error_set_elements(
-        error, ORB_ZERO_AREA_TRIANGLE, ORB_TRIANGLE, found->elements, found->entries, found->found,
-        "%lld %s no area, first %d, so that weights are not positive and finite: merge their "
-        "vertices by distance, dissolve them (Mesh > Clean Up > Degenerate Dissolve), or use "
-        "other weights",
-        (long long)found->found, found->found == 1 ? "triangle has" : "triangles have", (int)found->elements[0]);
+    const bool any = flat.triangles.found + flat.filling.found > 0;
+    return mesh_blame_error(
+        error, ORB_ZERO_AREA_TRIANGLE, any ? &flat : &beside, "triangle has no area", "triangles have no area",
+        "weights there are not positive and finite; merge their vertices by distance, dissolve them "
+        "(Mesh > Clean Up > Degenerate Dissolve), or use other weights");
 }
 
 orb_status cotangents_measure(const orb_mesh *mesh, orb_cotangents *cotangents, orb_error *error) {
