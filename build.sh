@@ -95,7 +95,7 @@ want_screen() {
     want libgl1-mesa-dri
 }
 
-want_# Both targets for so many seconds each, from the kept corpus on; what they find is left in build/fuzz.
+# Both targets for so many seconds each, from the kept corpus on; what they find is left in build/fuzz.
 fuzz() {
     local name folder seconds=${arguments[0]:-60} binary
     want_native
@@ -116,7 +116,7 @@ fuzz() {
     done
 }
 
-docs() {
+want_docs() {
     want_blender
     want_python numpy
     want pngquant pngquant
