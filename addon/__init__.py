@@ -14,8 +14,8 @@ bl_info = {
 import bpy
 
 from . import (
-    cli, handlers, live, operators, painting, panels, preferences, previews, properties, surface, transfer_settings,
-    viewing,
+    cli, handlers, image_edits, live, operators, painting, panels, preferences, previews, properties, surface,
+    transfer_settings, viewing,
 )
 from .api import OrbifoldError, check, sphere, suggest, transfer, unwrap
 from .panels import menus
@@ -31,6 +31,7 @@ def register() -> None:
         bpy.utils.register_class(cls)
     menus.register()
     handlers.register()
+    image_edits.register()
     viewing.register()
     transfer_settings.register()
     live.register()
@@ -44,6 +45,7 @@ def unregister() -> None:
     live.unregister()
     transfer_settings.unregister()
     viewing.unregister()
+    image_edits.unregister()
     handlers.unregister()
     menus.unregister()
     previews.clear()

@@ -24,19 +24,28 @@ def bake(
     source_uv: np.ndarray, pixels: np.ndarray,
 ) -> Generator[Step, None, np.ndarray]:
     """(height, width, 4) by the UV map (m, 3, 2) of the target's triangles: what `pixels` (h, w, 4) has by the
-    `source_uv` (m', 3, 2) where `on_source` maps the points of the target to. Without alpha where there is nothing.
-    A step for each portion of the triangles."""
+    `source_uv` (m', 3, 2) where `on_source` maps the points of the target to, and the colours beside it for MARGIN
+    texels. Without alpha where there is nothing. A step for each portion of the triangles."""
+    image, covered = yield from on_islands(target_uv, width, height, on_source, source_uv, pixels)
+    return _spread(image, covered)
+
+
+def on_islands(
+    target_uv: np.ndarray, width: int, height: int, on_source: Callable[[np.ndarray, np.ndarray], Spots],
+    source_uv: np.ndarray, pixels: np.ndarray,
+) -> Generator[Step, None, tuple[np.ndarray, np.ndarray]]:
+    """The same without a margin, and (height, width) which texels have got something."""
     image = np.zeros((height * width, 4))
     covered = np.zeros(height * width, bool)
-    for first, last in _portions(target_uv, width, height):
+    for first, last in portions(target_uv, width, height):
         yield "image", first / len(target_uv)
-        texels, triangles, barycentric = _texels(target_uv[first:last], width, height)
+        texels, triangles, barycentric = texels_of(target_uv[first:last], width, height)
         at, where = on_source(triangles + first, barycentric)
         known = at >= 0
         places = np.einsum("pc,pcd->pd", where[known], source_uv[at[known]])
         image[texels[known]] = sampled(pixels, places)
         covered[texels[known]] = True
-    return _spread(image.reshape(height, width, 4), covered.reshape(height, width))
+    return image.reshape(height, width, 4), covered.reshape(height, width)
 
 
 def _boxes(uv: np.ndarray, width: int, height: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -48,7 +57,7 @@ def _boxes(uv: np.ndarray, width: int, height: int) -> tuple[np.ndarray, np.ndar
     return points, low, np.where((size > LARGEST * np.array([width, height])).any(1)[:, None], 0, size)
 
 
-def _portions(uv: np.ndarray, width: int, height: int) -> list[tuple[int, int]]:
+def portions(uv: np.ndarray, width: int, height: int) -> list[tuple[int, int]]:
     """Triangles from, to, so that their boxes do not have too many texels in all."""
     _, _, size = _boxes(uv, width, height)
     part = np.cumsum(size.prod(1)) // AT_ONCE
@@ -56,7 +65,7 @@ def _portions(uv: np.ndarray, width: int, height: int) -> list[tuple[int, int]]:
     return list(zip(starts.tolist(), [*starts[1:].tolist(), len(uv)]))
 
 
-def _texels(uv: np.ndarray, width: int, height: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def texels_of(uv: np.ndarray, width: int, height: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(p,) the texels whose centres lie in triangles (m, 3, 2), which triangles, and (p, 3) where in these."""
     points, low, size = _boxes(uv, width, height)
     counts = size.prod(1)

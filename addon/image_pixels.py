@@ -41,6 +41,18 @@ def read(image: bpy.types.Image) -> np.ndarray:
     return pixels
 
 
+def read_colours(image: bpy.types.Image) -> np.ndarray:
+    """(height, width, 4) float32, whatever its channels."""
+    pixels = read(image)
+    values = pixels / np.float32(255) if pixels.dtype == np.uint8 else pixels
+    colours = np.ones((*values.shape[:2], 4), np.float32)
+    n = values.shape[2]
+    colours[:, :, :3] = values[:, :, : min(n, 3)] if n != 2 else values[:, :, :1]
+    if n in (2, 4):
+        colours[:, :, 3] = values[:, :, -1]
+    return colours
+
+
 def write(image: bpy.types.Image, pixels: np.ndarray) -> None:
     """What `read` gives. As after a stroke the image is dirty: it has to be saved or packed."""
     if pixels.dtype == np.uint8:

@@ -1,71 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Patterns of the plane as shader nodes: functions of the lattice's coordinates, in which the unit square is a period
-(the layout `Periodic`), made of sines and cosines that the group leaves as they are.
-
-Coordinates are u and v, or for the patterns of triangles and hexagons a = u - v, b = 2 v, c = -(u + v): there the unit
-square is a rectangle 1 : 1.73 of the hexagonal lattice, and a third of a turn about its corner permutes a, b, c.
-Which of the patterns a group leaves as it is is not looked up but tried: at many points, under each generator.
-"""
+"""The patterns of formulas.py as shader nodes, and which of them fit a layout."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import bpy
 import numpy as np
 
 from . import blender_mesh
+from .formulas import PATTERNS, fits
 from .layouts import Layout
 
 LIGHT, DARK = (0.90, 0.86, 0.78), (0.05, 0.16, 0.28)  # linear
-POINTS = 400  # at which a pattern is tried
-
-
-@dataclass(frozen=True)
-class Pattern:
-    name: str
-    description: str
-    waves: tuple[tuple[int, int, bool], ...]  # factors of u and v, in units of pi; whether it is a sine
-    product: bool  # the waves' product, or their sum; its sign chooses the colour
-    offset: float  # added to it
-
-
-PATTERNS = {
-    "CHECKER": Pattern(
-        "Checker", "Squares in two colours, about every corner of the lattice",
-        ((16, 0, False), (0, 16, False)), True, 0.0
-    ),
-    "STRIPES": Pattern(
-        "Stripes", "For 2222: stripes, which half a turn leaves as they are", ((24, 0, False),), False, 0.0
-    ),
-    "TRIANGLES": Pattern(
-        "Triangles", "For 333: triangles in two colours, which a third of a turn leaves as they are",
-        ((16, -16, True), (0, 32, True), (-16, -16, True)), True, 0.0,
-    ),
-    "QUADS": Pattern(
-        "Quads", "For 442: rounded quads, which a quarter of a turn leaves as they are",
-        ((16, 0, False), (0, 16, False)), False, -0.25,
-    ),
-    "HEXAGONS": Pattern(
-        "Hexagons", "For 632 and 333: rounded hexagons, which a sixth of a turn leaves as they are",
-        ((16, -16, False), (0, 32, False), (-16, -16, False)), False, 0.8,
-    ),
-}
-
-
-def value_at(pattern: Pattern, uv: np.ndarray) -> np.ndarray:
-    """(k,) at points (k, 2) in the lattice's coordinates."""
-    waves = [(np.sin if sine else np.cos)(np.pi * (a * uv[:, 0] + b * uv[:, 1])) for a, b, sine in pattern.waves]
-    return (np.prod(waves, axis=0) if pattern.product else np.sum(waves, axis=0)) + pattern.offset
-
-
-def fits(pattern: Pattern, moves: list[Callable[[np.ndarray], np.ndarray]]) -> bool:
-    """Whether these motions, of points (k, 2) in the lattice's coordinates, leave the pattern as it is."""
-    points = np.random.default_rng(0).uniform(-1, 1, (POINTS, 2))
-    here = value_at(pattern, points)
-    sure = np.abs(here) > 1e-3
-    return all((np.sign(value_at(pattern, move(points))) == np.sign(here))[sure].all() for move in moves)
 
 
 def moves_of(layout: Layout, to_cells: np.ndarray) -> list[Callable[[np.ndarray], np.ndarray]]:
@@ -93,6 +40,49 @@ def why_not(kind: str, layout: Layout, to_cells: np.ndarray | None) -> str | Non
     return f"{PATTERNS[kind].name} do not fit the symmetry of {layout.signature}: use {' or '.join([*others, 'Rings'])}"
 
 
+class Nodes:
+    """What formulas are made of, as nodes of a tree: sockets. `lattice` (3, 2) takes (u, v, 1) of the UV map to the
+    lattice's coordinates."""
+
+    def __init__(self, tree: bpy.types.NodeTree, lattice: np.ndarray) -> None:
+        self._tree, self._lattice, self._made = tree, lattice, 0
+        coordinates = self.node("ShaderNodeUVMap")
+        coordinates.uv_map = blender_mesh.UV_MAP
+        self._uv = coordinates.outputs["UV"]
+
+    def node(self, kind: str) -> bpy.types.Node:
+        made = self._tree.nodes.new(kind)
+        made.location = (190 * self._made, -60 * (self._made % 4))
+        self._made += 1
+        return made
+
+    def math(self, operation: str, *values) -> bpy.types.NodeSocket:
+        made = self.node("ShaderNodeMath")
+        made.operation = operation
+        for socket, value in zip(made.inputs, values):
+            if isinstance(value, bpy.types.NodeSocket):
+                self._tree.links.new(value, socket)
+            else:
+                socket.default_value = value
+        return made.outputs[0]
+
+    def line(self, a: int, b: int) -> bpy.types.NodeSocket:
+        factors = self._lattice @ (a, b)
+        return self.math("ADD", self._dot(factors), float(factors[2]))
+
+    def wave(self, a: int, b: int, sine: bool = False) -> bpy.types.NodeSocket:
+        factors = np.pi * (self._lattice @ (a, b))
+        shifted = self.math("ADD", self._dot(factors), float(np.remainder(factors[2], 2 * np.pi)))
+        return self.math("SINE" if sine else "COSINE", shifted)
+
+    def _dot(self, factors: np.ndarray) -> bpy.types.NodeSocket:
+        dot = self.node("ShaderNodeVectorMath")
+        dot.operation = "DOT_PRODUCT"
+        self._tree.links.new(self._uv, dot.inputs[0])
+        dot.inputs[1].default_value = (factors[0], factors[1], 0.0)
+        return dot.outputs["Value"]
+
+
 def make_material(obj: bpy.types.Object, kind: str, lattice: np.ndarray) -> bpy.types.Material:
     """A material with this pattern; `lattice` (3, 2) takes (u, v, 1) of the UV map to the lattice's coordinates. An
     earlier one of this object is replaced."""
@@ -101,39 +91,9 @@ def make_material(obj: bpy.types.Object, kind: str, lattice: np.ndarray) -> bpy.
     blender_mesh.enable_nodes(material)
     tree = material.node_tree
     tree.nodes.clear()
-    pattern, nodes = PATTERNS[kind], []
-
-    def node(kind_of: str) -> bpy.types.Node:
-        made = tree.nodes.new(kind_of)
-        made.location = (190 * len(nodes), -60 * (len(nodes) % 4))
-        nodes.append(made)
-        return made
-
-    def math(operation: str, *values) -> bpy.types.NodeSocket:
-        made = node("ShaderNodeMath")
-        made.operation = operation
-        for socket, value in zip(made.inputs, values):
-            if isinstance(value, bpy.types.NodeSocket):
-                tree.links.new(value, socket)
-            else:
-                socket.default_value = value
-        return made.outputs[0]
-
-    coordinates = node("ShaderNodeUVMap")
-    coordinates.uv_map = blender_mesh.UV_MAP
-    waves = []
-    for a, b, sine in pattern.waves:
-        factors = np.pi * (lattice @ (a, b))
-        dot = node("ShaderNodeVectorMath")
-        dot.operation = "DOT_PRODUCT"
-        tree.links.new(coordinates.outputs["UV"], dot.inputs[0])
-        dot.inputs[1].default_value = (factors[0], factors[1], 0.0)
-        shifted = math("ADD", dot.outputs["Value"], float(np.remainder(factors[2], 2 * np.pi)))
-        waves.append(math("SINE" if sine else "COSINE", shifted))
-    total = waves[0]
-    for wave in waves[1:]:
-        total = math("MULTIPLY" if pattern.product else "ADD", total, wave)
-    chosen = math("GREATER_THAN", math("ADD", total, pattern.offset), 0.0)
+    on = Nodes(tree, lattice)
+    node = on.node
+    chosen = on.math("GREATER_THAN", PATTERNS[kind].formula(on), 0.0)
     colour = node("ShaderNodeValToRGB")
     colour.color_ramp.interpolation = "CONSTANT"
     for element, place, shade in zip(colour.color_ramp.elements, (0.0, 0.5), (DARK, LIGHT)):

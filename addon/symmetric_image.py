@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The symmetry that makes an image seamless on an object: the group of its layout, as motions of the unit square. Only
-layouts of the plane have it, and only in `Periodic` is the unit square a period."""
+layouts of the plane have it, and only in `Periodic` is the unit square always a period."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from .blender_mesh import BlenderMeshError
 from .layouts import Layout
 
 NEAR = 1e-3  # motions of two layouts that are the same one
+NOT_PERIODIC = 1e-4  # of the unit square
 
 
 @dataclass(frozen=True)
@@ -23,7 +24,13 @@ class Symmetry:
     signature: str
     motions: np.ndarray  # (n, 2, 3) of (u, v, 1); with the periods they generate the group
     uv: np.ndarray  # (m, 3, 2) the tile
-    tallness: float  # of the period on the plane: its side along v by that along u
+    sides: np.ndarray  # (2, 2) of the period, along u and v, on the plane
+
+    @property
+    def tallness(self) -> float:
+        """Of the period on the plane: its side along v by that along u."""
+        along_u, along_v = np.linalg.norm(self.sides, axis=1)
+        return float(along_v / along_u)
 
     def wallpaper(self, width: int, height: int) -> core.Wallpaper:
         return core.Wallpaper(width, height, self.motions, self.uv)
@@ -45,27 +52,22 @@ def symmetry_of(owner: str, layout: Layout) -> Symmetry:
         raise BlenderMeshError(
             f"No image repeats on the layout of {owner}: unwrap it with a signature of the plane, such as 442 or 2222"
         )
-    if layout.chart_name != "periodic":
+    if np.abs(layout.lattice[:2] - np.eye(2)).max() > NOT_PERIODIC:
         raise BlenderMeshError(
             f"The unit square is no period of the layout of {owner}: choose the layout Periodic in Orbifold Unwrap"
         )
-    return Symmetry(
-        owner, layout.signature, motions_of(layout.generators, layout.to_cells), layout.uv, tallness_of(layout.to_cells)
-    )
+    to_uv = layout.to_cells - [[0, 0], [0, 0], layout.lattice[2]]
+    sides = np.linalg.inv(to_uv[:2])
+    return Symmetry(owner, layout.signature, motions_of(layout.generators, to_uv), layout.uv, sides)
 
 
-def motions_of(generators: np.ndarray, to_cells: np.ndarray) -> np.ndarray:
-    """(n, 2, 3): isometries (n, 3, 3) of the plane's (x, y, 1) as motions of the lattice's coordinates, to which
-    `to_cells` (3, 2) takes (x, y, 1)."""
-    moved = generators.transpose(0, 2, 1) @ to_cells
-    turns = np.linalg.inv(to_cells[:2]) @ moved[:, :2]
-    shifts = moved[:, 2] - to_cells[2] @ turns
+def motions_of(generators: np.ndarray, to_uv: np.ndarray) -> np.ndarray:
+    """(n, 2, 3): isometries (n, 3, 3) of the plane's (x, y, 1) as motions of (u, v), to which `to_uv` (3, 2)
+    takes (x, y, 1)."""
+    moved = generators.transpose(0, 2, 1) @ to_uv
+    turns = np.linalg.inv(to_uv[:2]) @ moved[:, :2]
+    shifts = moved[:, 2] - to_uv[2] @ turns
     return np.concatenate([turns.transpose(0, 2, 1), shifts[:, :, None]], 2)
-
-
-def tallness_of(to_cells: np.ndarray) -> float:
-    along_u, along_v = np.linalg.norm(np.linalg.inv(to_cells[:2]), axis=1)
-    return float(along_v / along_u)
 
 
 def joined(symmetries: Sequence[Symmetry], image: str) -> Symmetry:

@@ -9,7 +9,7 @@ from typing import Optional
 import bpy
 import numpy as np
 
-from . import blender_mesh, materials
+from . import blender_mesh, image_pixels, materials
 
 
 @dataclass(frozen=True)
@@ -27,25 +27,41 @@ class Texture:
         return values.reshape(height, width, 4)
 
 
-def find(obj: bpy.types.Object) -> Texture:
-    """Of the active material the active image texture, or the first. BlenderMeshError where there is none."""
+def node_of(obj: bpy.types.Object) -> Optional[bpy.types.Node]:
+    """Of the active material the active image texture, or the first; None where there is none."""
     material = obj.active_material
+    pictures = _pictures(material)
+    active = material.node_tree.nodes.active if pictures else None
+    return next((node for node in pictures if node == active), pictures[0] if pictures else None)
+
+
+def node_with(obj: bpy.types.Object, image: bpy.types.Image) -> Optional[bpy.types.Node]:
+    """The image texture with this image in one of the object's materials, the active one first."""
+    materials_of = [obj.active_material, *(slot.material for slot in obj.material_slots)]
+    return next((node for material in materials_of for node in _pictures(material) if node.image == image), None)
+
+
+def _pictures(material: Optional[bpy.types.Material]) -> list[bpy.types.Node]:
     nodes = material.node_tree.nodes if material is not None and material.node_tree is not None else ()
-    pictures = [node for node in nodes if node.type == "TEX_IMAGE" and node.image is not None]
-    node = next((one for one in pictures if one == nodes.active), pictures[0] if pictures else None)
+    return [node for node in nodes if node.type == "TEX_IMAGE" and node.image is not None]
+
+
+def find(obj: bpy.types.Object) -> Texture:
+    """BlenderMeshError where the active material has no image texture, or not one that can be read."""
+    node = node_of(obj)
     if node is None:
         raise blender_mesh.BlenderMeshError(f"The active material of {obj.name} has no image texture to bake")
     if node.image.source == "TILED" or not all(node.image.size) or node.image.channels != 4:
         raise blender_mesh.BlenderMeshError(
             f"The image {node.image.name} of {obj.name} cannot be read: it has to be one tile, and its file there"
         )
-    uv_map = _uv_map(node, obj.data)
+    uv_map = uv_map_of(node, obj.data)
     if uv_map is None:
         raise blender_mesh.BlenderMeshError(f"{obj.name} has no UV map for its image texture")
-    return Texture(material, node.name, node.image, uv_map)
+    return Texture(obj.active_material, node.name, node.image, uv_map)
 
 
-def _uv_map(node: bpy.types.Node, mesh: bpy.types.Mesh) -> Optional[str]:
+def uv_map_of(node: bpy.types.Node, mesh: bpy.types.Mesh) -> Optional[str]:
     """That of the node which says where the image is looked up, else the one that is rendered."""
     links = node.inputs["Vector"].links
     named = getattr(links[0].from_node, "uv_map", "") if links else ""
@@ -76,15 +92,20 @@ def write(obj: bpy.types.Object, texture: Texture, pixels: np.ndarray, uv_map: s
 
 
 def _image(name: str, like: bpy.types.Image, pixels: np.ndarray) -> bpy.types.Image:
-    """Packed into the file; an earlier one of this name is replaced."""
+    """An earlier one of this name is replaced."""
     image = bpy.data.images.get(name)
     if image is not None:
         bpy.data.images.remove(image)
+    return new_image(name, pixels, like)
+
+
+def new_image(name: str, pixels: np.ndarray, like: Optional[bpy.types.Image] = None) -> bpy.types.Image:
+    """Of pixels (h, w, 4), packed into the file; of the same kind as another one, else with 8 bits."""
     height, width = pixels.shape[:2]
-    image = bpy.data.images.new(name, width, height, alpha=True, float_buffer=like.is_float)
-    image.colorspace_settings.name = like.colorspace_settings.name
-    image.alpha_mode = like.alpha_mode
-    image.pixels.foreach_set(np.ascontiguousarray(pixels, np.float32).ravel())
-    image.update()
+    image = bpy.data.images.new(name, width, height, alpha=True, float_buffer=like is not None and like.is_float)
+    if like is not None:
+        image.colorspace_settings.name = like.colorspace_settings.name
+        image.alpha_mode = like.alpha_mode
+    image_pixels.write(image, pixels)
     image.pack()
     return image

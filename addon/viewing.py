@@ -6,11 +6,11 @@ from __future__ import annotations
 import bpy
 from bpy.props import BoolProperty, EnumProperty, PointerProperty, StringProperty
 
-from . import overlay, procedural
+from . import formulas, overlay
 
 PATTERNS = (
     ("RINGS", "Rings", "For every orbifold: rings about the cones, an image that is made for the layout"),
-    *((key, pattern.name, pattern.description) for key, pattern in procedural.PATTERNS.items()),
+    *((key, pattern.name, pattern.description) for key, pattern in formulas.PATTERNS.items()),
 )
 
 

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import importlib
 import os
+import subprocess
 import sys
+import tempfile
 from collections.abc import Callable, Generator, Sequence
 
 import bmesh
@@ -235,6 +237,42 @@ def stroke() -> Generator:
     yield
 
 
+def wallpaper() -> Generator:
+    """The wallpaper that is made from a picture without any symmetry, and the creature with it."""
+    yield from folded()
+    yield from uv_editor(0.45)
+    yield from show_image(bpy.context.object.active_material.name, flat)
+    look(SIDE, (0, 0.3, 1.2), 1.1 * FAR)
+    yield from photograph(f"{folder}/wallpaper.png")
+    area_of("VIEW_3D").spaces.active.show_region_ui = True
+    yield
+
+
+def seams() -> Generator:
+    """Close to the cut, at places all along its two paths: with it, and below without."""
+    yield from folded()
+    obj, view = bpy.context.object, bpy.context.scene.orbifold_view
+    area_of("VIEW_3D").spaces.active.show_region_ui = False
+    _, edges, paths = part("layouts").read_cut(obj.data)
+    chosen = [edges[paths == path][int(share * (paths == path).sum())] for path in (0, 1) for share in (0.3, 0.6, 0.8)]
+    view.show_cones = False
+    with tempfile.TemporaryDirectory() as work:
+        names = []
+        for view.show_cut in (True, False):
+            for number, edge in enumerate(chosen):
+                ends = [obj.data.vertices[vertex] for vertex in edge]
+                normal = sum((end.normal for end in ends), Vector())
+                angles = np.degrees(normal.to_track_quat("Z", "Y").to_euler())
+                look(tuple(angles), tuple((ends[0].co + ends[1].co) / 2), 0.9)
+                names.append(os.path.join(work, f"{view.show_cut}{number}.png"))
+                yield from photograph(names[-1], (0.1, 0, 0.9, 1))
+        tiles = ["-tile", f"{len(chosen)}x", "-geometry", "250x250^+2+2", "-background", "white"]
+        subprocess.run(["montage", *names, *tiles, f"{folder}/seams.png"], check=True)
+    view.show_cut = view.show_cones = True
+    area_of("VIEW_3D").spaces.active.show_region_ui = True
+    yield
+
+
 def transferring() -> Generator:
     """Two creatures with landmarks; the colours of one are on both."""
     yield from bare()
@@ -265,7 +303,7 @@ SCENES: dict[str, Callable[[], Generator]] = {
     scene.__name__: scene
     for scene in (
         one_click, redo, picking, signatures, layout, heat, pattern, suggesting, checking, painting, stroke,
-        transferring,
+        wallpaper, seams, transferring,
     )
 }
 
@@ -294,19 +332,54 @@ def three_cones() -> Generator:
 def petals() -> Generator:
     """The creature with the image of painting.md, which is beside it."""
     yield from three_cones()
+    run_script()
+    yield from uv_editor(0.45)
+    yield from show_image("Petals")
+    look((55, 0, 160), (0.1, -0.6, 2.1), 2.4)
+
+
+def run_script() -> None:
+    """That of painting.md."""
     with open(os.path.join(os.path.dirname(__file__), "painting.md"), encoding="utf-8") as page:
         script = page.read().partition("```python\n")[2].partition("```")[0]
     exec(compile(script, "painting.md", "exec"), {})
-    yield from uv_editor(0.45)
+
+
+def show_image(name: str, shaded: Callable[[], None] = lambda: shade("MATERIAL")) -> Generator:
+    """In the image editor, beside the mesh that shows it."""
     area_of("IMAGE_EDITOR").ui_type = "IMAGE_EDITOR"
     yield
     space = area_of("IMAGE_EDITOR").spaces.active
-    space.image, space.show_region_ui, space.show_region_toolbar = bpy.data.images["Petals"], False, False
+    space.image, space.show_region_ui, space.show_region_toolbar = bpy.data.images[name], False, False
     area_of("VIEW_3D").spaces.active.show_region_ui = False
     fit_uv()
-    look((55, 0, 160), (0.1, -0.6, 2.1), 2.4)
-    shade("MATERIAL")
+    shaded()
     yield from pause(40)
+
+
+def folded() -> Generator:
+    """The creature with a wallpaper from a picture without any symmetry: waves of many lengths."""
+    yield from three_cones()
+    v, u = np.mgrid[:1024, :1024] / 1024
+    chance, waves = np.random.default_rng(8), 0
+    for octave in range(2, 8):
+        along = chance.normal(size=(2, 3)) * 2**octave
+        waves = waves + np.sin(u[:, :, None] * along[0] + v[:, :, None] * along[1] + chance.uniform(0, 6, 3))
+    colours = 0.5 + 0.45 * np.tanh(0.5 * waves)
+    picture = bpy.data.images.new("Picture", 1024, 1024)
+    picture.pixels.foreach_set(np.dstack([colours, np.ones((1024, 1024))]).astype(np.float32).ravel())
+    with inside():
+        bpy.ops.image.orbifold_wallpaper(picture="Picture", size=2048, blend=0.8)
+    obj = bpy.context.object
+    nodes = obj.active_material.node_tree.nodes
+    nodes.active = next(node for node in nodes if node.type == "TEX_IMAGE")
+    flat()
+
+
+def flat() -> None:
+    """The image as it is, in solid shading, which is quick."""
+    shade("SOLID")
+    area_of("VIEW_3D").spaces.active.shading.color_type = "TEXTURE"
 
 
 def twin_of(obj: bpy.types.Object) -> bpy.types.Object:

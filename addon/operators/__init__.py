@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Operators, one idea a file."""
 
-from . import check, cones, fixed_boundary, painting, sliding, sphere, stretch, suggesting, transfer, unwrap, viewing
+from . import (
+    check, cones, fixed_boundary, ordinary, painting, seam_margin, sliding, sphere, stretch, suggesting, transfer, unwrap,
+    viewing, wallpaper,
+)
 
 CLASSES = (
     *cones.CLASSES,
@@ -15,4 +18,7 @@ CLASSES = (
     *check.CLASSES,
     *transfer.CLASSES,
     *painting.CLASSES,
+    *seam_margin.CLASSES,
+    *wallpaper.CLASSES,
+    *ordinary.CLASSES,
 )

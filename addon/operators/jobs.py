@@ -16,13 +16,21 @@ from .. import blender_mesh, core
 INTERVAL = 0.05  # seconds between two looks at the job
 
 
+ADVICE = {
+    ("EDIT",): "Go to edit mode first",
+    ("EDIT", "OBJECT"): "Go to edit mode or object mode first",
+    ("OBJECT", "TEXTURE_PAINT"): "Go to object mode or texture paint mode first",
+    ("EDIT", "OBJECT", "TEXTURE_PAINT"): "Go to edit mode, object mode or texture paint mode first",
+}
+
+
 def mesh_problem(context: bpy.types.Context, modes: tuple[str, ...] = ("EDIT", "OBJECT")) -> Optional[str]:
     """Why no operator of ours can run here; None where it can."""
     obj = context.active_object
     if obj is None or obj.type != "MESH":
         return "Make a mesh object active first"
     if obj.mode not in modes:
-        return "Go to edit mode first" if modes == ("EDIT",) else "Go to edit mode or object mode first"
+        return ADVICE[modes]
     if obj.data.library is not None or (obj.library is not None and obj.override_library is None):
         return "The mesh is linked from another file: make it local first"
     return None

@@ -104,7 +104,8 @@ def draw_submenu(self, _context: bpy.types.Context) -> None:
 def draw_image_entries(self, _context: bpy.types.Context) -> None:
     self.layout.separator()
     self.layout.operator_menu_enum("image.orbifold_symmetrize", "source")
-    self.layout.operator("image.orbifold_new")
+    for name in ("image.orbifold_new", "image.orbifold_wallpaper", "image.orbifold_fill_seam_margin"):
+        self.layout.operator(name)
 
 
 MENU_GROUPS = (
@@ -114,6 +115,8 @@ MENU_GROUPS = (
     ("mesh.orbifold_show_stretch", "mesh.orbifold_show_distortion", "object.orbifold_tile_preview",
      "object.orbifold_pattern"),
     ("image.orbifold_symmetrize", "image.orbifold_new"),
+    ("object.orbifold_pattern_image", "image.orbifold_wallpaper", "image.orbifold_fill_seam_margin",
+     "object.orbifold_bake"),
     ("object.orbifold_transfer", "object.orbifold_suggest_order"),
     ("mesh.orbifold_hide_distortion", "mesh.orbifold_cancel_live", "mesh.orbifold_check"),
 )

@@ -14,7 +14,7 @@ from test_run import open_sphere, sphere_mesh, write_obj
 
 SCRIPTS = (
     "registration.py", "picking.py", "unwrapping.py", "orbifolds.py", "suggesting.py", "seeing.py", "bad_input.py",
-    "checking.py", "objects.py", "transferring.py", "cutting.py", "painting.py",
+    "checking.py", "objects.py", "transferring.py", "cutting.py", "painting.py", "patterns.py",
 )
 
 

@@ -35,7 +35,7 @@ def function(points):
 
 def painted(vertices, triangles, uv, size):
     """(size, size, 2) the function where texels' middles lie in triangles, and else 9; whether they do."""
-    texels, of, barycentric = bare("baking")._texels(uv, size, size)
+    texels, of, barycentric = bare("baking").texels_of(uv, size, size)
     image, covered = np.full((size * size, 2), 9, np.float32), np.zeros(size * size, bool)
     image[texels] = function(np.einsum("pc,pcd->pd", barycentric, vertices[triangles[of]]))
     covered[texels] = True

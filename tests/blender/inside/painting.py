@@ -117,7 +117,7 @@ def check_the_height_is_that_of_square_texels():
 
 def check_layouts_on_which_no_image_repeats_are_refused():
     for settings, words in (
-        (("442", dict(chart_euclidean="conformal")), "choose the layout Periodic"),
+        (("333", dict(chart_euclidean="conformal")), "choose the layout Periodic"),
         (("432", {}), "a signature of the plane, such as 442 or 2222"), (("237", {}), "a signature of the plane"),
     ):
         unwrapped(settings[0], **settings[1])

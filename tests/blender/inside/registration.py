@@ -80,6 +80,9 @@ class Layout:
     def prop(self, _data, name, **settings):
         self.names.add(name)
 
+    def prop_search(self, data, name, *_of, **settings):
+        self.prop(data, name)
+
 
 def function_of(name):
     group, _, operator = name.partition(".")
@@ -121,6 +124,10 @@ MISSING = {
     "object.orbifold_pattern": "use Orbifold Unwrap first",
     "image.orbifold_symmetrize": "use Orbifold Unwrap first",
     "image.orbifold_new": "use Orbifold Unwrap first",
+    "object.orbifold_pattern_image": "use Orbifold Unwrap first",
+    "image.orbifold_wallpaper": "use Orbifold Unwrap first",
+    "image.orbifold_fill_seam_margin": "Give the active material an image texture",
+    "object.orbifold_bake": "Give the active material an image texture",
     "object.orbifold_transfer": "Select the meshes that are to get something too",
     "object.orbifold_suggest_order": "Select the meshes that are to get something too",
 }

@@ -269,15 +269,15 @@ def check_the_preview_is_updated_and_taken_back_in_one_step():
 
 
 def check_patterns_are_as_exact_as_the_group():
-    procedural = part("procedural")
+    procedural, formulas = part("procedural"), part("formulas")
     fitting = {
-        "442": {"CHECKER", "QUADS"}, "2222": {"CHECKER", "STRIPES", "QUADS"}, "333": {"TRIANGLES", "HEXAGONS"},
-        "632": {"HEXAGONS"},
+        "442": {"CHECKER", "QUADS", "WEAVE"}, "2222": {"CHECKER", "STRIPES", "QUADS", "BRICKS", "WEAVE"},
+        "333": {"TRIANGLES", "HEXAGONS"}, "632": {"HEXAGONS"},
     }
     for signature, wanted in fitting.items():
         obj = unwrapped(signature)
         arrays, layout = read(obj)
-        kinds = {kind for kind in procedural.PATTERNS if procedural.why_not(kind, layout, layout.to_cells) is None}
+        kinds = {kind for kind in formulas.PATTERNS if procedural.why_not(kind, layout, layout.to_cells) is None}
         assert wanted <= kinds and (signature == "2222" or kinds == wanted), (signature, kinds)
         sides = {}
         indices, edges, _ = layouts.read_cut(obj.data)
@@ -291,7 +291,7 @@ def check_patterns_are_as_exact_as_the_group():
         assert len(both)
         for kind in kinds:
             lattice = np.column_stack([both.reshape(-1, 2), np.ones(2 * len(both))]) @ layout.lattice
-            value = procedural.value_at(procedural.PATTERNS[kind], lattice).reshape(-1, 2)
+            value = formulas.value_at(formulas.PATTERNS[kind], lattice).reshape(-1, 2)
             sure = np.abs(value).min(1) > 1e-3
             assert (np.sign(value[sure, 0]) == np.sign(value[sure, 1])).all(), (signature, kind)
             assert bpy.ops.object.orbifold_pattern(pattern=kind) == {"FINISHED"}
