@@ -54,10 +54,10 @@ def read_colours(image: bpy.types.Image) -> np.ndarray:
 
 
 def write(image: bpy.types.Image, pixels: np.ndarray) -> None:
-    """What `read` gives. As after a stroke the image is dirty: it has to be saved or packed."""
+    """What `read` gives, or other numbers from 0 to 1. As after a stroke the image is dirty: it has to be saved or packed."""
     if pixels.dtype == np.uint8:
         pixels = np.multiply(pixels, np.float32(1 / 255), dtype=np.float32)
-    image.pixels.foreach_set(pixels.ravel())
+    image.pixels.foreach_set(np.ascontiguousarray(pixels, np.float32).ravel())
     image.update()
     image.update_tag()  # without it version 5 shows a blend of old and new
 
