@@ -54,7 +54,7 @@ def read_colours(image: bpy.types.Image) -> np.ndarray:
 
 
 def write(image: bpy.types.Image, pixels: np.ndarray) -> None:
-    """What `read` gives, or other numbers from 0 to 1. As after a stroke the image is dirty: it has to be saved or packed."""
+    """What `read` gives, or any other floats. As after a stroke the image is dirty: it has to be saved or packed."""
     if pixels.dtype == np.uint8:
         pixels = np.multiply(pixels, np.float32(1 / 255), dtype=np.float32)
     image.pixels.foreach_set(np.ascontiguousarray(pixels, np.float32).ravel())
@@ -71,7 +71,7 @@ def differing(one: np.ndarray, other: np.ndarray) -> np.ndarray:
 
 
 def changes(pixels: np.ndarray, before: np.ndarray) -> np.ndarray:
-    """(height, width) uint8 how much the pixels of two images differ, 0 only where not at all; 255 from white to black."""
+    """(height, width) uint8 how much the pixels of two images differ: 0 not at all, and 255 from white to black."""
     found = differing(pixels, before).astype(np.uint8)
     area = bounds(found)
     if area is not None:
