@@ -291,7 +291,7 @@ def transferring() -> Generator:
     yield from tab("Show")
     region = region_of("VIEW_3D", "UI")
     for row in (1, 2, 4):  # fold Show and Painting, and unfold Transfer
-        yield from click(region.x + 0.4 * region.width, region.y + region.height - (15 + 23 * row) * SCALE)
+        yield from click(region.x + 0.4 * region.width, region.y + region.height - (15 + 25 * row) * SCALE)
         yield from pause(3)
     yield from away()
     yield from photograph(f"{folder}/transferring.png", (0, 0, 1, 0.97))
