@@ -4,8 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_PERIODS = 64 }; /* that a triangle may be away from the image, or wide */
-
 static int32_t wrapped(int64_t value, int32_t size) {
     const int32_t left = (int32_t)(value % size);
     return left < 0 ? left + size : left;

@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+enum { MOST_PERIODS = 64 }; /* that a triangle may be away from the image, or wide */
+
 /* Sets covered[height][width] to 1 there; the image repeats. uv [n_triangles*6]; triangles that reach over more than a
  * few periods, or are no numbers, are left out. */
 void coverage_mark(int32_t width, int32_t height, int32_t n_triangles, const double *uv, uint8_t *covered);

@@ -51,6 +51,8 @@ static bool look_up(const orb_margin *margin, int32_t triangle, const double uv[
     const double u = x - floor(x), v = y - floor(y);
     double all = 0, sum[MOST_CHANNELS] = {0, 0, 0, 0};
     float own[MOST_CHANNELS];
+    if (!(fabs(uv[0]) <= MOST_PERIODS && fabs(uv[1]) <= MOST_PERIODS))
+        return false;
     for (int corner = 0; corner < 4; corner++) {
         const int32_t column = (int32_t)floor(x) + (corner & 1), row = (int32_t)floor(y) + corner / 2;
         const double weight = (corner & 1 ? u : 1 - u) * (corner & 2 ? v : 1 - v);
