@@ -80,12 +80,23 @@ def report_failure(
     operator.report({"ERROR"}, f"{sentence[:1].upper()}{sentence[1:]}.")
 
 
-class JobOperator:
+class WithProblem:
+    """Mix-in: an operator that says why it is grey."""
+
+    problem = staticmethod(mesh_problem)  # of a context: the sentence why the operator cannot run; None where it can
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        problem = cls.problem(context)
+        if problem is not None:
+            cls.poll_message_set(problem)
+        return problem is None
+
+
+class JobOperator(WithProblem):
     """Mix-in. The arrays and the topology of the mesh are in `self._arrays` and `self._surface` from the start on."""
 
     # ----------------------------------------------------------------------------- what subclasses provide
-
-    problem = staticmethod(mesh_problem)  # of a context: the sentence why the operator cannot run; None where it can
 
     def prepare(self, context: bpy.types.Context) -> None:
         """Checks before a long computation; raises BlenderMeshError."""
@@ -100,13 +111,6 @@ class JobOperator:
         raise NotImplementedError
 
     # ------------------------------------------------------------------------------------------ the stages
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        problem = cls.problem(context)
-        if problem is not None:
-            cls.poll_message_set(problem)
-        return problem is None
 
     def _start(self, context: bpy.types.Context) -> bool:
         obj = context.active_object

@@ -9,7 +9,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatVectorProperty, IntProperty, StringProperty
 
 from .. import blender_mesh, core, image_pixels, layouts, materials, painting, symmetric_image
-from .jobs import mesh_problem
+from .jobs import WithProblem, mesh_problem
 
 MODES = ("EDIT", "OBJECT", "TEXTURE_PAINT")
 EXPECTED = (core.OrbifoldError, blender_mesh.BlenderMeshError)
@@ -26,7 +26,7 @@ def _without_edit_mode(obj: bpy.types.Object):
     return blender_mesh.object_mode(obj) if obj.mode == "EDIT" else nullcontext()
 
 
-class PaintingOperator:
+class PaintingOperator(WithProblem):
     """Mix-in."""
 
     bl_options = {"REGISTER", "UNDO"}
@@ -37,13 +37,6 @@ class PaintingOperator:
         if problem is None and not layouts.has_layout(context.active_object.data):
             problem = "The mesh has no layout yet: use Orbifold Unwrap first"
         return problem
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        problem = cls.problem(context)
-        if problem is not None:
-            cls.poll_message_set(problem)
-        return problem is None
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         painting.forget_layouts()

@@ -10,7 +10,7 @@ import numpy as np
 from bpy.props import IntProperty
 
 from .. import blender_mesh, core, image_edits, image_pixels, seam_margins
-from .jobs import mesh_problem
+from .jobs import WithProblem, mesh_problem
 
 
 def margin_problem(context: bpy.types.Context) -> Optional[str]:
@@ -26,7 +26,7 @@ def margin_problem(context: bpy.types.Context) -> Optional[str]:
     return image_pixels.problem(image)
 
 
-class IMAGE_OT_orbifold_fill_seam_margin(bpy.types.Operator):
+class IMAGE_OT_orbifold_fill_seam_margin(WithProblem, bpy.types.Operator):
     bl_idname = "image.orbifold_fill_seam_margin"
     bl_label = "Fill Seam Margin"
     bl_description = (
@@ -42,12 +42,7 @@ class IMAGE_OT_orbifold_fill_seam_margin(bpy.types.Operator):
         default=4, min=0, max=10,
     )
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        problem = margin_problem(context)
-        if problem is not None:
-            cls.poll_message_set(problem)
-        return problem is None
+    problem = staticmethod(margin_problem)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         active, image = context.active_object, seam_margins.image_of(context)

@@ -8,7 +8,7 @@ import numpy as np
 from bpy.props import EnumProperty
 
 from .. import blender_mesh, heat, layouts, materials, procedural, tile_copies, tile_preview, viewing
-from .jobs import mesh_problem, report_failure
+from .jobs import WithProblem, mesh_problem, report_failure
 
 
 def layout_problem(context: bpy.types.Context) -> str | None:
@@ -19,17 +19,12 @@ def layout_problem(context: bpy.types.Context) -> str | None:
     return problem
 
 
-class LayoutOperator:
+class LayoutOperator(WithProblem):
     """Mix-in: operators on the layout of the last unwrap."""
 
     bl_options = {"REGISTER", "UNDO"}
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        problem = layout_problem(context)
-        if problem is not None:
-            cls.poll_message_set(problem)
-        return problem is None
+    problem = staticmethod(layout_problem)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         obj = context.active_object
